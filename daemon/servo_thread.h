@@ -1,0 +1,59 @@
+// The servo thread: sleeps to absolute times and runs one Cycle a period. It allocates, locks, logs and throws nothing
+// once it runs; all it has to say goes through ServoShared.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "control/build/program.h"
+#include "daemon/cycle.h"
+#include "daemon/realtime.h"
+#include "daemon/servo_shared.h"
+#include "daemon/tick_schedule.h"
+
+namespace hapticd::daemon {
+
+struct ServoOptions {
+  TickScheduleOptions schedule;
+  int priority = 80;
+  std::optional<int> cpu;
+  std::int64_t max_ticks = 0;  ///< end by itself after this many ticks; 0: never
+};
+
+class ServoThread {
+ public:
+  /// Devices are connected; they, `program` and `shared` outlive the thread. After it has ended the program that it ran
+  /// on is program().
+  ServoThread(ServoOptions options, std::vector<drivers::Device*> devices, build::Program* program, ServoShared& shared);
+  ~ServoThread();
+  ServoThread(const ServoThread&) = delete;
+  ServoThread& operator=(const ServoThread&) = delete;
+
+  /// Starts the thread and returns once it is about to run its first tick; `report` is then complete.
+  void start(RealtimeReport& report);
+  /// Asks it to end: forces ramp out, a few zero-force stop cycles, then it joins.
+  void stop();
+
+  build::Program* program() const noexcept { return program_; }
+
+ private:
+  void body(RealtimeReport& report) noexcept;
+  void loop() noexcept;
+  bool tick(const Wake& wake) noexcept;
+  void adopt_plan() noexcept;
+  void account(const Wake& wake) noexcept;
+  void publish_status(std::int64_t tick) noexcept;
+
+  ServoOptions options_;
+  Cycle cycle_;
+  TickSchedule schedule_;
+  build::Program* program_;
+  ServoShared& shared_;
+  std::thread thread_;
+  std::atomic<bool> running_{false};
+  std::uint32_t clears_seen_ = 0;
+};
+
+}  // namespace hapticd::daemon

@@ -1,0 +1,51 @@
+// The telemetry thread: drains the record ring, keeps the last seconds, writes them to a file when a fault appears, and
+// appends every record to a file where the config asks for it.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "control/rt/spsc_ring.h"
+#include "daemon/recording.h"
+
+namespace hapticd::daemon {
+
+struct TelemetryOptions {
+  std::string flight_dir;   ///< empty: no flight recorder
+  double flight_s = 5;      ///< seconds before the fault
+  double after_s = 0.2;     ///< and after it
+  std::string record_path;  ///< empty: no full recording
+};
+
+/// Told by the telemetry thread; the callbacks run in it.
+struct TelemetryEvents {
+  std::function<void(const std::string& path, std::uint64_t records)> flight_written;
+  std::function<void(const Error& error)> failed;  ///< disk full and the like: told once per file, the loop goes on
+};
+
+class Telemetry {
+ public:
+  Telemetry(TelemetryOptions options, RecordingHeader header, rt::SpscRing& ring, TelemetryEvents events);
+  ~Telemetry();
+  Telemetry(const Telemetry&) = delete;
+  Telemetry& operator=(const Telemetry&) = delete;
+
+  /// Opens the full recording, if any, and starts the thread.
+  Result<void> start();
+  /// Drains what is left, finishes files, joins.
+  void stop();
+  /// After a reload: files from now on carry this header (same record layout).
+  void set_header(RecordingHeader header);
+  /// Records lost between loop and files, seen by gaps in RecordHeader::sequence.
+  std::uint64_t lost() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hapticd::daemon

@@ -1,0 +1,76 @@
+// When the ticks are, and what a late one means. Pure: times come in as arguments, so that every case of the policy is
+// tested in virtual time.
+//
+//   wake within its period            -> that tick
+//   wake m whole periods late         -> the tick number jumps by m; the m ticks between are missed, none is caught up
+//   m > max_gap_ticks                 -> Fault::overrun
+//   more than max_missed_per_s missed in the last second -> Fault::missed_rate
+//   boot time ran on while monotonic time stood still    -> Fault::suspended
+//   monotonic time ran backwards      -> Fault::clock_jump
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "control/core/fault.h"
+#include "daemon/servo_shared.h"
+
+namespace hapticd::daemon {
+
+struct TickScheduleOptions {
+  std::int64_t period_ns = 1'000'000;
+  int max_gap_ticks = 5;
+  int max_missed_per_s = 20;
+};
+
+/// The two clocks at one moment.
+struct ClockPair {
+  std::int64_t monotonic_ns = 0;
+  std::int64_t boottime_ns = 0;
+};
+
+/// One wake-up, judged.
+struct Wake {
+  std::int64_t tick = 0;
+  std::int64_t start_ns = 0;  ///< of this tick's period
+  std::int64_t late_ns = 0;   ///< after start_ns
+  std::int64_t missed_ticks = 0;
+  Phase blamed = Phase::wake;  ///< for missed ticks: the phase that was still running when the period ended
+  Fault fault = Fault::none;
+  double fault_found = 0;
+  double fault_allowed = 0;
+};
+
+class TickSchedule {
+ public:
+  explicit TickSchedule(const TickScheduleOptions& options) noexcept;
+
+  /// Tick 0 starts one period after `now`.
+  void start(ClockPair now) noexcept;
+  /// Absolute CLOCK_MONOTONIC time of the next tick.
+  std::int64_t next_ns() const noexcept { return next_ns_; }
+  /// The thread woke up for the tick at next_ns().
+  Wake woke(ClockPair now) noexcept;
+  /// The tick's work is done; ends of its phases relative to the period's start [ns]. True: it ended after its period.
+  bool finished(const std::array<std::int64_t, kPhases>& phase_ends) noexcept;
+
+ private:
+  std::int64_t missed_in_last_second(std::int64_t now_ns) const noexcept;
+
+  struct Gap {
+    std::int64_t at_ns = 0;
+    std::int64_t missed = 0;
+  };
+  static constexpr std::size_t kGaps = 256;
+
+  TickScheduleOptions options_;
+  std::int64_t next_ns_ = 0;
+  std::int64_t next_tick_ = 0;
+  std::int64_t last_monotonic_ns_ = 0;
+  std::int64_t sleep_offset_ns_ = 0;  ///< boottime - monotonic: grows only while the machine is suspended
+  Phase late_phase_ = Phase::wake;
+  std::array<Gap, kGaps> gaps_{};
+  std::size_t gap_next_ = 0;
+};
+
+}  // namespace hapticd::daemon

@@ -1,0 +1,77 @@
+// The one interface between the loop and hardware. Simulated devices implement it too, so all above it is tested in the
+// loop.
+//
+// Life of a device, as the servo loop and the supervisor drive it:
+//   connect()                               supervisor, before the loop runs: may block and allocate
+//   [request -> collect -> command] *       servo thread, every tick, from `ready` on; efforts are zero until enabled
+//   set_armed(true) ... Aux::armed          servo thread: power stage on; may take many ticks; force only once armed
+//   stop()                                  servo thread, on every way out and in every tick of a fault: zero force
+//   disconnect()                            supervisor, after the loop has ended
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "control/core/result.h"
+#include "control/core/sample.h"
+
+namespace hapticd::drivers {
+
+/// When a device measures, relative to the tick that uses the sample.
+enum class Timing : std::uint8_t {
+  in_phase,          ///< after request() of the same tick
+  free_running,      ///< on the device's own clock
+  reply_to_command,  ///< on the command of the tick before
+};
+
+/// Identity and timing, as found by connect().
+struct DeviceInfo {
+  std::string model;      ///< for people
+  std::string serial;     ///< empty: the device has none
+  std::string lock_name;  ///< names the physical device among all on this machine; empty: nothing physical to lock
+  Timing timing = Timing::in_phase;
+  double worst_sample_age_s = 0;  ///< older samples count as missing; part of the latency of every check
+};
+
+/// A tick as devices see it.
+struct TickTime {
+  std::int64_t tick = 0;         ///< number of the period
+  std::int64_t start_ns = 0;     ///< of the period: CLOCK_MONOTONIC, or virtual time
+  std::int64_t deadline_ns = 0;  ///< collect is given up at this time
+};
+
+enum class Collected : std::uint8_t { complete, waiting };
+
+class Device {
+ public:
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  virtual ~Device() = default;
+
+  // -- set-up, supervisor thread -------------------------------------------------------------------------------------
+  /// Opens, identifies and configures the device, power stage off. Errors name the device, what was expected and found.
+  virtual Result<DeviceInfo> connect() = 0;
+  /// Leaves the device without force and closes it.
+  virtual void disconnect() noexcept = 0;
+
+  // -- loop, servo thread: never allocates, throws, logs or waits ----------------------------------------------------
+  /// Starts this tick's exchange: sends a query, or nothing.
+  virtual void request(const TickTime& time) noexcept = 0;
+  /// Takes what has arrived. `waiting`: not all of it; call again when wait_fd() is readable, until the deadline, after
+  /// which the axes without a value are `missing`. `axes` is as long as the device has axes.
+  virtual Collected collect(std::span<AxisSample> axes, Aux& aux) noexcept = 0;
+  /// Descriptor that becomes readable when collect() can go on; -1: there is none.
+  virtual int wait_fd() const noexcept { return -1; }
+  /// Sends efforts [N, N m]; writes what the wire could carry of them to `delivered`.
+  virtual void command(std::span<const double> effort, std::span<double> delivered) noexcept = 0;
+  /// Power stage on or off. Repeating a call is harmless; Aux::armed tells when it is done.
+  virtual void set_armed(bool armed) noexcept = 0;
+  /// Zero force now, by the shortest way that the device has. Callable at any time after connect().
+  virtual void stop() noexcept = 0;
+  /// Why Aux::faulted is set, as a static text for people.
+  virtual std::string_view fault_text() const noexcept { return {}; }
+};
+
+}  // namespace hapticd::drivers
