@@ -1,4 +1,5 @@
-// Config -> what runs: the program for the loop, options for devices and daemon, and what the stability check assumes.
+// Config -> what runs: the program for the loop, options for devices and daemon, and what the
+// stability check assumes.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,12 +14,16 @@
 
 namespace hapticd::config {
 
+class Places;
+
 /// A file as read: the struct, its exact text and a digest of the text (recordings carry both).
 struct Document {
-  std::string path;
-  std::string text;
-  std::string digest;  ///< 16 hexadecimal digits, FNV-1a 64 of `text`
-  Config config;
+  std::string path{};
+  std::string text{};
+  std::string digest{};  ///< 16 hexadecimal digits, FNV-1a 64 of `text`
+  Config config{};
+  std::shared_ptr<const Places>
+      places{};  ///< line and column of each value, for errors; empty: not from a file
 };
 
 /// All that a run needs. `simulated[i]` belongs to device i.

@@ -1,5 +1,5 @@
-// The record of one tick: a fixed header and arrays sized by the plan. The same bytes go through the ring, into the
-// flight recorder and into simulation files (format: daemon/recording.h).
+// The record of one tick: a fixed header and arrays sized by the plan. The same bytes go through
+// the ring, into the flight recorder and into simulation files (format: daemon/recording.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,8 @@ struct RecordHeader {
   Fault host_fault = Fault::none;  ///< as it was in the input, for replay
   Mode mode = Mode::idle;
   std::uint8_t flags = 0;  ///< bit 0 enable, bit 1 clear_fault, as in the input
-  std::uint32_t sequence = 0;  ///< counts records: a gap shows records lost before they reached the file
+  std::uint32_t sequence =
+      0;  ///< counts records: a gap shows records lost before they reached the file
 };
 static_assert(sizeof(RecordHeader) == 80 && alignof(RecordHeader) == 8);
 
@@ -41,8 +42,8 @@ static_assert(sizeof(RecordHeader) == 80 && alignof(RecordHeader) == 8);
 RecordLayout record_layout(std::size_t axes, std::size_t coordinates, std::size_t devices) noexcept;
 
 /// Writes one record of plan.record.bytes into `slot` (8-byte aligned, at least that long).
-void write_record(const Plan& plan, const State& state, const TickInput& input, const TickOutput& output,
-                  std::int64_t time_ns, const PhaseTimes& phases, std::uint32_t sequence,
-                  std::byte* slot) noexcept HAPTICD_NONBLOCKING;
+void write_record(const Plan& plan, const State& state, const TickInput& input,
+                  const TickOutput& output, std::int64_t time_ns, const PhaseTimes& phases,
+                  std::uint32_t sequence, std::byte* slot) noexcept HAPTICD_NONBLOCKING;
 
 }  // namespace hapticd::control

@@ -1,6 +1,7 @@
-// One tick around step(): request, collect, step, command, record. The servo thread, `hapticctl simulate` and the
-// benchmarks run this same code; only the clock that they pass in differs.
+// One tick around step(): request, collect, step, command, record. The servo thread, `hapticctl
+// simulate` and the benchmarks run this same code; only the clock that they pass in differs.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,43 +30,50 @@ struct CycleInput {
 
 class Cycle {
  public:
-  /// Devices in plan order; `axes[i]` is the number of axes of device i.
+  /// Devices in plan order. A plan that is swapped in later has the same devices and axes.
   Cycle(std::vector<drivers::Device*> devices, const control::Plan& plan);
 
-  /// Runs one tick. `ring` may be nullptr: no record. Afterwards output() and phases() tell about it.
-  void run(build::Program& program, const CycleInput& input, Now now, rt::SpscRing* ring) noexcept;
+  /// Runs one tick. `ring` may be nullptr: no record. Afterwards the getters tell about it.
+  void run(build::Program& program, const CycleInput& input, Now now,
+           rt::SpscRing* ring) noexcept HAPTICD_NONBLOCKING;
+
+  /// A stop cycle, for every way out: zero force to every device, power stages off.
+  void stop() noexcept;
 
   const control::TickOutput& output() const noexcept { return output_; }
   const control::PhaseTimes& phases() const noexcept { return phases_; }
-  /// All devices reported their power stage on in the last tick.
+  /// Every device had its power stage on.
   bool armed() const noexcept { return armed_; }
   std::span<const AxisSample> samples() const noexcept { return samples_; }
 
-  /// Zero force to every device, with the state's efforts zero as well. For every way out.
-  void stop() noexcept;
-
  private:
-  void request_all(const drivers::TickTime& time) noexcept;
-  void collect_all(const drivers::TickTime& time, Now now) noexcept;
-  void supervise(control::TickInput& input) noexcept;
-  void command_all() noexcept;
-  void set_armed(bool armed) noexcept;
-
   struct Slot {
     drivers::Device* device;
     std::size_t first_axis, axes;
     bool complete;
   };
+
+  void request_all(const drivers::TickTime& time) noexcept;
+  void collect_all(const drivers::TickTime& time, Now now) noexcept;
+  bool collect_waiting() noexcept;
+  bool wait_for_buses(std::int64_t timeout_ns) noexcept;
+  control::TickInput tick_input(const control::State& state, const CycleInput& input) noexcept;
+  void command_all() noexcept;
+  void set_armed(bool armed) noexcept;
+  void record(const build::Program& program, const control::TickInput& tick, std::int64_t start_ns,
+              rt::SpscRing* ring) noexcept;
+
   std::vector<Slot> slots_;
   std::vector<AxisSample> samples_;
   std::vector<Aux> aux_;
-  std::vector<double> delivered_;
+  std::array<std::vector<double>, 2>
+      delivered_;  // of the last tick (step reads it) and of this one
+  std::size_t last_ = 0;
   control::TickOutput output_;
   control::PhaseTimes phases_;
   std::uint32_t sequence_ = 0;
   bool armed_ = false;
   bool arm_wanted_ = false;
-  bool was_enabled_ = false;
 };
 
 }  // namespace hapticd::daemon

@@ -1,5 +1,6 @@
-// What the servo thread needs of the machine, asked for right by right. A right that is missing is reported with its
-// name and how to grant it; whether that is fatal is the caller's policy (--require-realtime).
+// What the servo thread needs of the machine, asked for right by right. A right that is missing is
+// reported with its name and how to grant it; whether that is fatal is the caller's policy
+// (--require-realtime).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,15 +17,16 @@ struct MissingRight {
 
 /// What was got.
 struct RealtimeReport {
-  std::string scheduling = "SCHED_OTHER";  ///< class and priority that the servo thread really runs at
+  std::string scheduling =
+      "SCHED_OTHER";  ///< class and priority that the servo thread really runs at
   bool memory_locked = false;
   bool dma_latency_held = false;
   std::optional<int> cpu;
   std::vector<MissingRight> missing;
 };
 
-/// Whole-process set-up, before the servo thread starts: locks present and future memory, keeps the heap from giving
-/// memory back, holds /dev/cpu_dma_latency at 0 for as long as the object lives.
+/// Whole-process set-up, before the servo thread starts: locks present and future memory, keeps the
+/// heap from giving memory back, holds /dev/cpu_dma_latency at 0 for as long as the object lives.
 class ProcessRealtime {
  public:
   explicit ProcessRealtime(RealtimeReport& report);
@@ -36,21 +38,9 @@ class ProcessRealtime {
   int dma_latency_fd_ = -1;
 };
 
-/// In the servo thread itself, before its first tick: SCHED_FIFO, CPU pinning, stack prefault. Flush-to-zero is set by
-/// the loop for every caller of step().
+/// In the servo thread itself, before its first tick: SCHED_FIFO, CPU pinning, stack prefault.
+/// Flush-to-zero is set by Cycle::run for every caller alike.
 void enter_realtime(int priority, std::optional<int> cpu, RealtimeReport& report);
-
-/// Sets flush-to-zero and denormals-are-zero while it lives: a subnormal operand costs about 100 times a normal one.
-class FlushDenormals {
- public:
-  FlushDenormals() noexcept;
-  ~FlushDenormals();
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  std::uint64_t saved_ = 0;
-};
 
 /// "6.1.0-rt PREEMPT_RT" or the like, for reports.
 std::string kernel_description();

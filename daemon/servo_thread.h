@@ -1,8 +1,8 @@
-// The servo thread: sleeps to absolute times and runs one Cycle a period. It allocates, locks, logs and throws nothing
-// once it runs; all it has to say goes through ServoShared.
+// The servo thread: sleeps to absolute times and runs one Cycle a period. It allocates, locks, logs
+// and throws nothing once it runs; all it has to say goes through ServoShared.
 #pragma once
+#include <atomic>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -16,22 +16,23 @@
 namespace hapticd::daemon {
 
 struct ServoOptions {
-  TickScheduleOptions schedule;
+  TickScheduleOptions schedule{};
   int priority = 80;
-  std::optional<int> cpu;
-  std::int64_t max_ticks = 0;  ///< end by itself after this many ticks; 0: never
+  std::optional<int> cpu{};
 };
 
 class ServoThread {
  public:
-  /// Devices are connected; they, `program` and `shared` outlive the thread. After it has ended the program that it ran
-  /// on is program().
-  ServoThread(ServoOptions options, std::vector<drivers::Device*> devices, build::Program* program, ServoShared& shared);
+  /// Devices are connected; they, `program` and `shared` outlive the thread. After it has ended the
+  /// program that it ran on is program().
+  ServoThread(ServoOptions options, std::vector<drivers::Device*> devices, build::Program* program,
+              ServoShared& shared);
   ~ServoThread();
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
 
-  /// Starts the thread and returns once it is about to run its first tick; `report` is then complete.
+  /// Starts the thread and returns once it is about to run its first tick; `report` is then
+  /// complete.
   void start(RealtimeReport& report);
   /// Asks it to end: forces ramp out, a few zero-force stop cycles, then it joins.
   void stop();
@@ -39,9 +40,9 @@ class ServoThread {
   build::Program* program() const noexcept { return program_; }
 
  private:
-  void body(RealtimeReport& report) noexcept;
   void loop() noexcept;
-  bool tick(const Wake& wake) noexcept;
+  void tick(const Wake& wake, bool ending) noexcept;
+  void take_orders(CycleInput& input) noexcept;
   void adopt_plan() noexcept;
   void account(const Wake& wake) noexcept;
   void publish_status(std::int64_t tick) noexcept;

@@ -1,12 +1,14 @@
-// When the ticks are, and what a late one means. Pure: times come in as arguments, so that every case of the policy is
-// tested in virtual time.
+// When the ticks are, and what a late one means. Pure: times come in as arguments, so that every
+// case of the policy is tested in virtual time.
 //
-//   wake within its period            -> that tick
-//   wake m whole periods late         -> the tick number jumps by m; the m ticks between are missed, none is caught up
-//   m > max_gap_ticks                 -> Fault::overrun
-//   more than max_missed_per_s missed in the last second -> Fault::missed_rate
-//   boot time ran on while monotonic time stood still    -> Fault::suspended
-//   monotonic time ran backwards      -> Fault::clock_jump
+//   a wake-up ...
+//     within its period           runs that tick
+//     m whole periods late        runs the current one: the m between are missed, none caught up
+//   and it is a fault when
+//     m > max_gap_ticks                                          overrun
+//     more than max_missed_per_s were missed in the last second  missed_rate
+//     boot time ran on while monotonic time stood still          suspended
+//     monotonic time ran backwards                               clock_jump
 #pragma once
 #include <array>
 #include <cstddef>
@@ -35,7 +37,8 @@ struct Wake {
   std::int64_t start_ns = 0;  ///< of this tick's period
   std::int64_t late_ns = 0;   ///< after start_ns
   std::int64_t missed_ticks = 0;
-  Phase blamed = Phase::wake;  ///< for missed ticks: the phase that was still running when the period ended
+  Phase blamed =
+      Phase::wake;  ///< for missed ticks: the phase that was still running when the period ended
   Fault fault = Fault::none;
   double fault_found = 0;
   double fault_allowed = 0;
@@ -51,23 +54,28 @@ class TickSchedule {
   std::int64_t next_ns() const noexcept { return next_ns_; }
   /// The thread woke up for the tick at next_ns().
   Wake woke(ClockPair now) noexcept;
-  /// The tick's work is done; ends of its phases relative to the period's start [ns]. True: it ended after its period.
+  /// The tick's work is done; ends of its phases relative to the period's start [ns]. True: it
+  /// ended after its period.
   bool finished(const std::array<std::int64_t, kPhases>& phase_ends) noexcept;
 
  private:
+  void judge(ClockPair now, Wake& wake) const noexcept;
   std::int64_t missed_in_last_second(std::int64_t now_ns) const noexcept;
 
   struct Gap {
     std::int64_t at_ns = 0;
     std::int64_t missed = 0;
   };
-  static constexpr std::size_t kGaps = 256;
+  /// Gaps that are remembered: more than the largest max_missed_per_s of a config (1000), so the
+  /// count is exact as far as it matters.
+  static constexpr std::size_t kGaps = 1024;
 
   TickScheduleOptions options_;
   std::int64_t next_ns_ = 0;
   std::int64_t next_tick_ = 0;
   std::int64_t last_monotonic_ns_ = 0;
-  std::int64_t sleep_offset_ns_ = 0;  ///< boottime - monotonic: grows only while the machine is suspended
+  std::int64_t sleep_offset_ns_ =
+      0;  ///< boottime - monotonic: grows only while the machine is suspended
   Phase late_phase_ = Phase::wake;
   std::array<Gap, kGaps> gaps_{};
   std::size_t gap_next_ = 0;

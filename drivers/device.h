@@ -1,12 +1,13 @@
-// The one interface between the loop and hardware. Simulated devices implement it too, so all above it is tested in the
-// loop.
+// The one interface between the loop and hardware. Simulated devices implement it too, so all above
+// it is tested in the loop.
 //
-// Life of a device, as the servo loop and the supervisor drive it:
-//   connect()                               supervisor, before the loop runs: may block and allocate
-//   [request -> collect -> command] *       servo thread, every tick, from `ready` on; efforts are zero until enabled
-//   set_armed(true) ... Aux::armed          servo thread: power stage on; may take many ticks; force only once armed
-//   stop()                                  servo thread, on every way out and in every tick of a fault: zero force
-//   disconnect()                            supervisor, after the loop has ended
+// Life of a device:
+//   connect()                supervisor, before the loop runs: may block and allocate
+//   request collect command  servo thread, every tick from `ready` on; zero effort until enabled
+//   set_armed(true)          servo thread: power stage on, may take many ticks; force only once
+//                            Aux::armed says so
+//   stop()                   servo thread, on every way out and in every tick of a fault
+//   disconnect()             supervisor, after the loop has ended
 #pragma once
 #include <cstdint>
 #include <span>
@@ -27,11 +28,13 @@ enum class Timing : std::uint8_t {
 
 /// Identity and timing, as found by connect().
 struct DeviceInfo {
-  std::string model;      ///< for people
-  std::string serial;     ///< empty: the device has none
-  std::string lock_name;  ///< names the physical device among all on this machine; empty: nothing physical to lock
+  std::string model{};      ///< for people
+  std::string serial{};     ///< empty: the device has none
+  std::string lock_name{};  ///< names the physical device among all on this machine; empty: nothing
+                            ///< physical to lock
   Timing timing = Timing::in_phase;
-  double worst_sample_age_s = 0;  ///< older samples count as missing; part of the latency of every check
+  double worst_sample_age_s =
+      0;  ///< older samples count as missing; part of the latency of every check
 };
 
 /// A tick as devices see it.
@@ -50,17 +53,21 @@ class Device {
   Device& operator=(const Device&) = delete;
   virtual ~Device() = default;
 
-  // -- set-up, supervisor thread -------------------------------------------------------------------------------------
-  /// Opens, identifies and configures the device, power stage off. Errors name the device, what was expected and found.
+  // -- set-up, supervisor thread
+  // -------------------------------------------------------------------------------------
+  /// Opens, identifies and configures the device, power stage off. Errors name the device, what was
+  /// expected and found.
   virtual Result<DeviceInfo> connect() = 0;
   /// Leaves the device without force and closes it.
   virtual void disconnect() noexcept = 0;
 
-  // -- loop, servo thread: never allocates, throws, logs or waits ----------------------------------------------------
+  // -- loop, servo thread: never allocates, throws, logs or waits
+  // ----------------------------------------------------
   /// Starts this tick's exchange: sends a query, or nothing.
   virtual void request(const TickTime& time) noexcept = 0;
-  /// Takes what has arrived. `waiting`: not all of it; call again when wait_fd() is readable, until the deadline, after
-  /// which the axes without a value are `missing`. `axes` is as long as the device has axes.
+  /// Takes what has arrived. `waiting`: not all of it; call again when wait_fd() is readable, until
+  /// the deadline, after which the axes without a value are `missing`. `axes` is as long as the
+  /// device has axes.
   virtual Collected collect(std::span<AxisSample> axes, Aux& aux) noexcept = 0;
   /// Descriptor that becomes readable when collect() can go on; -1: there is none.
   virtual int wait_fd() const noexcept { return -1; }

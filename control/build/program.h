@@ -1,5 +1,5 @@
-// A plan with its storage, the state that goes with it and the names that people know things by. Made at set-up, handed
-// to the servo thread as one pointer (control/rt/plan_mailbox.h).
+// A plan with its storage, the state that goes with it and the names that people know things by.
+// Made at set-up, handed to the servo thread as one pointer (control/rt/plan_mailbox.h).
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -38,7 +38,8 @@ class Program {
  private:
   ProgramSpec spec_;
   std::vector<control::AxisState> axis_states_;
-  std::vector<double> x_, v_, scene_force_, force_, effort_;
+  std::vector<control::CartesianAxis> cartesian_axes_;
+  std::vector<double> recorded_, v_, ramp_;
   control::Plan plan_;
   control::State state_;
 };

@@ -1,4 +1,5 @@
-// Upper bounds of one daemon. They size stack arrays in the loop and are checked once, at compile of a config.
+// Upper bounds of one daemon. They size stack arrays in the loop and are checked once, at compile
+// of a config.
 #pragma once
 #include <cstddef>
 
@@ -7,9 +8,9 @@ namespace hapticd {
 inline constexpr std::size_t kMaxDevices = 16;
 inline constexpr std::size_t kMaxAxesPerDevice = 6;
 inline constexpr std::size_t kMaxAxes = 48;
-inline constexpr std::size_t kMaxCoordinates = 48;       ///< contact coordinates over all devices
+inline constexpr std::size_t kMaxCoordinates = 48;        ///< contact coordinates over all devices
 inline constexpr std::size_t kMaxContactCoordinates = 3;  ///< of one contact
-inline constexpr std::size_t kMaxObjects = 100'000;      ///< scene objects
+inline constexpr std::size_t kMaxObjects = 100'000;       ///< scene objects
 inline constexpr std::size_t kCacheLine = 64;
 
 }  // namespace hapticd

@@ -1,8 +1,8 @@
-// Faults and limits, the one table: code, name, meaning, who sets it, what the operator does. The man page hapticd(8)
-// prints this table and a test holds the two together.
+// Faults and limits, the one table: code, name, meaning, who sets it, what the operator does. The
+// man page hapticd(8) prints this table and a test holds the two together.
 //
-// A fault takes all forces to zero in the tick that sees it and stays until an operator clears it. A limit is not a
-// fault: the force was bounded, the loop goes on, and the record says so.
+// A fault takes all forces to zero in the tick that sees it and stays until an operator clears it.
+// A limit is not a fault: the force was bounded, the loop goes on, and the record says so.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -64,7 +64,8 @@ struct FaultReport {
   double allowed = 0;               ///< same unit
 };
 
-/// One row of the table. `unit` is that of FaultReport::found; for a quantity of an axis "" means the axis' own unit.
+/// One row of the table. `unit` is that of FaultReport::found; for a quantity of an axis "" means
+/// the axis' own unit.
 struct FaultEntry {
   Fault code;
   std::string_view name;

@@ -1,5 +1,5 @@
-// One macro for the compilers that can check at compile time and at run time that a function does not block
-// (clang 20 and later, -fsanitize=realtime). It goes after noexcept.
+// One macro for the compilers that can check at compile time and at run time that a function does
+// not block (clang 20 and later, -fsanitize=realtime). It goes after noexcept.
 #pragma once
 
 #if defined(__clang__) && defined(__has_cpp_attribute)

@@ -9,9 +9,9 @@ namespace hapticd {
 /// Exit codes of hapticd and hapticctl (sysexits.h where one fits), listed in the man pages.
 enum class ExitCode : int {
   ok = 0,
-  no = 1,              ///< the answer is no: not stable, check failed
+  no = 1,  ///< the answer is no: not stable, check failed
   usage = 64,
-  bad_data = 65,       ///< config data
+  bad_data = 65,  ///< config data
   no_input = 66,
   unavailable = 69,    ///< device
   software = 70,       ///< a defect

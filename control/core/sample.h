@@ -18,16 +18,16 @@ struct AxisSample {
   std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC when it was measured, as well as the driver knows
   std::int64_t age_ns = 0;    ///< age at collect
   Freshness freshness = Freshness::missing;
-  bool homed = false;           ///< the device says that its zero is known
+  bool homed = false;              ///< the device says that its zero is known
   std::uint16_t drive_limits = 0;  ///< limiters that the drive itself reports, driver-specific bits
   std::uint32_t drive_faults = 0;  ///< faults that the drive itself reports, driver-specific bits
 };
 
 /// What else a device reports each tick.
 struct Aux {
-  std::uint32_t digital = 0;  ///< buttons, dead-man, e-stop: one bit each
-  bool armed = false;         ///< power stage on: efforts that are commanded are delivered
-  bool faulted = false;       ///< the device cannot go on; Device::fault_text says why
+  std::uint32_t digital = 0;         ///< buttons, dead-man, e-stop: one bit each
+  bool armed = false;                ///< power stage on: efforts that are commanded are delivered
+  bool faulted = false;              ///< the device cannot go on; Device::fault_text says why
   std::array<double, 6> analogue{};  ///< force sensor and the like, SI
 };
 

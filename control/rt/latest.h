@@ -1,5 +1,5 @@
-// Latest<T>: one writer, any readers, newest value wins. A seqlock over atomic words, so that neither side ever waits:
-// the reader gives up after a few tries and keeps what it had.
+// Latest<T>: one writer, any readers, newest value wins. A seqlock over atomic words, so that
+// neither side ever waits: the reader gives up after a few tries and keeps what it had.
 #pragma once
 #include <array>
 #include <atomic>
@@ -30,8 +30,8 @@ class Latest {
     sequence_.store(sequence + 2, std::memory_order_release);
   }
 
-  /// Reader. True and a whole value, or false with `value` untouched: nothing stored yet, or the writer was at it
-  /// each time.
+  /// Reader. True and a whole value, or false with `value` untouched: nothing stored yet, or the
+  /// writer was at it each time.
   [[nodiscard]] bool load(T& value) const noexcept {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const std::uint64_t before = sequence_.load(std::memory_order_acquire);
@@ -40,7 +40,8 @@ class Latest {
       std::array<std::uint64_t, kWords> words{};
       for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
       if (sequence_.load(std::memory_order_relaxed) != before) continue;
-      std::memcpy(&value, words.data(), sizeof(T));
+      std::memcpy(static_cast<void*>(&value), words.data(),
+                  sizeof(T));  // T may have default initialisers
       return true;
     }
     return false;

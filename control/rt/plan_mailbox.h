@@ -1,9 +1,11 @@
 // Swaps what the servo thread runs on, without it ever waiting or freeing.
 //
-//   supervisor: offer(new)  ...  collect() -> old, to be deleted
-//   servo:      current = exchange(current), at the start of a tick
+//   supervisor   offer(fresh) ... collect() gives the old one back, to be deleted
+//   servo        at the start of a tick: fresh = take(); if there is one, release(current) and run
+//                on fresh
 //
-// One swap at a time: a second offer is refused until the first was adopted and the old object collected.
+// One swap at a time: a second offer is refused until the first was adopted and the old object
+// collected. That is also why release() may overwrite the outbox: it is empty by then.
 #pragma once
 #include <atomic>
 
@@ -12,7 +14,7 @@ namespace hapticd::rt {
 template <class T>
 class PlanMailbox {
  public:
-  /// Supervisor. False: a swap is still under way.
+  /// Supervisor. `fresh` is not nullptr. False: a swap is still under way.
   [[nodiscard]] bool offer(T* fresh) noexcept {
     if (busy_) return false;
     busy_ = true;
@@ -37,7 +39,7 @@ class PlanMailbox {
     if (inbox_.load(std::memory_order_relaxed) == nullptr) return nullptr;
     return inbox_.exchange(nullptr, std::memory_order_acquire);
   }
-  /// Servo.
+  /// Servo. `old` is not nullptr; the servo thread never touches it again.
   void release(T* old) noexcept { outbox_.store(old, std::memory_order_release); }
 
  private:

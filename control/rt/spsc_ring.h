@@ -1,8 +1,8 @@
-// Ring of fixed-size slots from one writer to one reader, wait-free on both sides. The slot size is that of the plan's
-// record, so it is a number and not a type; the caller owns the storage.
+// Ring of fixed-size slots from one writer to one reader, wait-free on both sides. The slot size is
+// that of the plan's record, so it is a number and not a type; the caller owns the storage.
 //
-// Each index has its own cache line beside a cached copy of the other one: as long as the ring is neither full nor empty
-// the two threads share no line but the slots themselves.
+// Each index has its own cache line beside a cached copy of the other one: as long as the ring is
+// neither full nor empty the two threads share no line but the slots themselves.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -15,7 +15,8 @@ namespace hapticd::rt {
 
 class SpscRing {
  public:
-  /// `storage` is 8-byte aligned; it holds storage.size() / slot_bytes slots. slot_bytes: a multiple of 8, > 0.
+  /// `storage` is 8-byte aligned; it holds storage.size() / slot_bytes slots. slot_bytes: a
+  /// multiple of 8, > 0.
   SpscRing(std::span<std::byte> storage, std::size_t slot_bytes) noexcept
       : storage_(storage.data()), slot_bytes_(slot_bytes), slots_(storage.size() / slot_bytes) {}
   SpscRing(const SpscRing&) = delete;

@@ -1,20 +1,28 @@
-// Is the compiled scene passive on these devices? The one proof known so far is the closed form for planes rendered
-// directly, at zero latency, on Cartesian axes:
+// Is the compiled scene passive on these devices? The one proof known so far is the closed form for
+// planes rendered directly, at zero latency, on Cartesian axes; per device the matrix inequality
 //
-//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  <  Delta_D          (matrix inequality, per device)
+//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  <  Delta_D
 //
-// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box. For one axis it is Colgate's
-// k T/2 + b < b_device. Every plane is summed as if all were touched at once.
+// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box. For one
+// axis it is Colgate's k T/2 + b < b_device. Every plane is summed as if all were touched at once.
 //
-// Proof. Depth p_k, e = p_k - p_{k-1}, d = p_{k+1} - p_k, P = max(p, 0); force f = max(0, k p + (b/T) e) where p > 0, else 0.
-// With S_k = (k/2) P_k^2 + (b/2T) e^2 the inequality
-//        f d >= S_{k+1} - S_k - (k/2 + b/T) d^2                                                            (1)
-// holds: in contact k p d >= (k/2)((P+d)_+^2 - P^2 - d^2) and (b/T) e d >= -(b/2T)(e^2 + d^2), which is (1). Out of contact
-// f = 0, P_{k+1} <= max(0, d), so the right side is at most (k/2) d^2 + (b/2T) d^2 - (k/2 + b/T) d^2 <= 0. In contact with f
-// clipped at zero: for d >= 0 the unclipped force is negative, so 0 >= (k p + (b/T) e) d >= right side; for d < 0 P does not
-// grow and (b/2T)(d^2 - e^2) <= (b/T) d^2. Held over the period, the device's damper takes at least d Delta_D d / T of the
-// energy (Cauchy-Schwarz), and a passive hand gives no more than it has: the sum over planes of (1) is paid for if the
-// inequality above holds. Forces of several planes and devices add.
+// Proof. For one plane let p_k be the depth, e = p_k - p_{k-1}, d = p_{k+1} - p_k, P = max(p, 0);
+// the force is f = max(0, k p + (b/T) e) where p > 0, else 0. With the storage
+// S_k = (k/2) P_k^2 + (b/2T) e^2 the inequality
+//
+//   f d >= S_{k+1} - S_k - (k/2 + b/T) d^2                                                     (1)
+//
+// holds in each of the three cases:
+//   in contact      k p d >= (k/2) (P_{k+1}^2 - P_k^2 - d^2) and (b/T) e d >= -(b/2T) (e^2 + d^2);
+//                   their sum is (1).
+//   out of contact  f = 0 and P_{k+1} <= max(0, d), so the right side of (1) is at most
+//                   (k/2) d^2 + (b/2T) d^2 - (k/2 + b/T) d^2 <= 0.
+//   clipped         p > 0 but k p + (b/T) e < 0, so f = 0. For d >= 0 the unclipped force times d
+//                   is negative and, by the first case, no less than the right side. For d < 0 P
+//                   does not grow, and (b/2T) (d^2 - e^2) <= (b/T) d^2.
+// The force is held over the period, in which the device's damper takes at least d' Delta_D d / T of
+// the energy (Cauchy-Schwarz), and a passive hand gives no more than it has. The sum of (1) over the
+// planes is paid for if the matrix inequality holds; forces of several planes and devices add.
 #pragma once
 #include <string>
 #include <vector>
@@ -34,12 +42,16 @@ struct DeviceAssumption {
 struct PassiveAnswer {
   bool proved = false;
   std::string why;  ///< the inequality with its figures, or what is missing
-  double damping_used = 0;      ///< share of the device's damping that the proof uses; < 1 where it is a proof
-  double stiffness_factor = 0;  ///< all stiffnesses may grow by this factor; infinity where there is none
-  double longest_hold_s = 0;    ///< a force may be held this long: the missed ticks that the proof tolerates
+  double damping_used =
+      0;  ///< share of the device's damping that the proof uses; < 1 where it is a proof
+  double stiffness_factor =
+      0;  ///< all stiffnesses may grow by this factor; infinity where there is none
+  double longest_hold_s =
+      0;  ///< a force may be held this long: the missed ticks that the proof tolerates
 };
 
 /// One answer per device. `assumed.size() == plan.devices.size()`.
-std::vector<PassiveAnswer> passive(const control::Plan& plan, const std::vector<DeviceAssumption>& assumed);
+std::vector<PassiveAnswer> passive(const control::Plan& plan,
+                                   const std::vector<DeviceAssumption>& assumed);
 
 }  // namespace hapticd::check

@@ -1,0 +1,171 @@
+#include "config/compile.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "config/compilation.h"
+#include "config/describe.h"
+#include "config/nearest.h"
+#include "config/places.h"
+#include "config/text_check.h"
+#include "config/yaml_tree.h"
+#include "control/core/capacity.h"
+
+namespace hapticd::config {
+namespace {
+
+constexpr std::size_t kMaxSocketBytes = 107;  // sockaddr_un::sun_path less its end
+
+/// Reports names that come twice. `path_of(i)` is the path of name i.
+template <class PathOf>
+void check_unique(Compilation& compilation, const std::vector<std::string>& names, PathOf path_of) {
+  std::map<std::string, std::size_t> first;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto [before, is_new] = first.emplace(names[i], i);
+    if (is_new) continue;
+    compilation.refuse(path_of(i), quote(names[i]) + " is the name of " + path_of(before->second) +
+                                       " already; give each its own");
+  }
+}
+
+std::vector<std::string> object_names(const Config& config) {
+  std::vector<std::string> names;
+  for (const SceneObject& object : config.scene) {
+    names.push_back(std::visit([](const auto& shape) { return shape.name; }, object));
+  }
+  return names;
+}
+
+std::string object_path(const Config& config, std::size_t index) {
+  const auto kind = [](const auto& shape) {
+    return std::string(kKindOf<std::decay_t<decltype(shape)>>);
+  };
+  return indexed("scene", index) + "." + std::visit(kind, config.scene[index]) + ".name";
+}
+
+void make_relative_to(const std::filesystem::path& directory, std::string& path) {
+  if (path.empty() || path.front() == '/') return;
+  path = (directory / path).lexically_normal().string();
+}
+
+void compile_all(Compilation& compilation) {
+  check_capacities(compilation);
+  if (!compilation.errors.empty()) return;  // the rest would say it again, once for each axis
+  check_names(compilation);
+  check_paths(compilation);
+  const Config& config = compilation.config;
+  compilation.spec.period_s = 1 / config.loop.rate_Hz;
+  for (std::size_t i = 0; i < config.devices.size(); ++i) {
+    const Device& device = config.devices[i];
+    const DevicePlace place{device, indexed("devices", i), effective_guard(config.guard, device)};
+    compile_device(compilation, place);
+    compile_simulated(compilation, place);
+  }
+  if (compilation.errors.empty()) compile_scene(compilation);
+}
+
+}  // namespace
+
+void Compilation::refuse(const std::string& path, std::string message) {
+  if (errors.size() >= kMaxErrors) return;
+  const Mark mark = document_.places ? document_.places->find(path) : Mark{};
+  errors.push_back({.file = document_.path,
+                    .line = mark.line,
+                    .column = mark.column,
+                    .path = path,
+                    .message = std::move(message)});
+}
+
+std::string indexed(std::string_view list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+std::string unknown_name(std::string_view what, const std::string& name,
+                         const std::vector<std::string>& known) {
+  const std::string near = nearest(name, known);
+  std::string text = "there is no " + std::string(what) + " " + quote(name);
+  if (!near.empty()) return text + "; did you mean '" + near + "'?";
+  text += "; there are:";
+  for (const std::string& word : known) text += " " + word;
+  return text;
+}
+
+void check_capacities(Compilation& compilation) {
+  const Config& config = compilation.config;
+  const auto check = [&](const std::string& path, std::size_t count, std::size_t max,
+                         const std::string& what) {
+    if (count <= max) return;
+    compilation.refuse(path, "expected at most " + std::to_string(max) + " " + what + ", found " +
+                                 std::to_string(count) + "; split the set-up over several daemons");
+  };
+  check("devices", config.devices.size(), kMaxDevices, "devices");
+  check("scene", config.scene.size(), kMaxObjects, "objects");
+  std::size_t axes = 0;
+  for (std::size_t i = 0; i < config.devices.size(); ++i) {
+    const std::size_t own = config.devices[i].axes.size();
+    check(indexed("devices", i) + ".axes", own, kMaxAxesPerDevice, "axes of a device");
+    axes += own;
+  }
+  check("devices", axes, kMaxAxes, "axes over all devices");
+  static_assert(kMaxCoordinates >= kMaxAxes, "Cartesian contacts have as many coordinates as axes");
+}
+
+void check_names(Compilation& compilation) {
+  const Config& config = compilation.config;
+  std::vector<std::string> devices;
+  for (std::size_t i = 0; i < config.devices.size(); ++i) {
+    devices.push_back(config.devices[i].name);
+    std::vector<std::string> axes;
+    for (const Axis& axis : config.devices[i].axes) axes.push_back(axis.name);
+    const std::string list = indexed("devices", i) + ".axes";
+    check_unique(compilation, axes,
+                 [&](std::size_t axis) { return indexed(list, axis) + ".name"; });
+  }
+  check_unique(compilation, devices, [](std::size_t i) { return indexed("devices", i) + ".name"; });
+  check_unique(compilation, object_names(config),
+               [&](std::size_t i) { return object_path(config, i); });
+}
+
+void resolve_paths(Config& config, const std::string& config_path) {
+  const std::filesystem::path directory = std::filesystem::path(config_path).parent_path();
+  make_relative_to(directory, config.control.socket);
+  make_relative_to(directory, config.telemetry.flight_dir);
+  if (config.telemetry.record) make_relative_to(directory, *config.telemetry.record);
+}
+
+void check_paths(Compilation& compilation) {
+  const std::string& socket = compilation.config.control.socket;
+  if (socket.empty()) compilation.refuse("control.socket", "expected a path, found an empty text");
+  if (socket.size() > kMaxSocketBytes) {
+    compilation.refuse("control.socket",
+                       "expected a path of at most 107 bytes (the system's limit), found " +
+                           std::to_string(socket.size()) + ": " + socket +
+                           "; choose a shorter one");
+  }
+  const std::optional<std::string>& record = compilation.config.telemetry.record;
+  if (record && record->empty()) {
+    compilation.refuse("telemetry.record",
+                       "expected a path, found an empty text; null means no recording");
+  }
+}
+
+Checked<Compiled> compile(Document document) {
+  resolve_paths(document.config, document.path);
+  Compilation compilation(document);
+  compile_all(compilation);
+  if (!compilation.errors.empty()) return tl::unexpected(std::move(compilation.errors));
+  Compiled compiled;
+  compiled.program = std::make_unique<build::Program>(std::move(compilation.spec));
+  compiled.simulated = std::move(compilation.simulated);
+  compiled.assumed = std::move(compilation.assumed);
+  compiled.document = std::move(document);
+  return compiled;
+}
+
+Checked<Compiled> load(const std::string& path) {
+  return read_file(path).and_then(compile);
+}
+
+}  // namespace hapticd::config

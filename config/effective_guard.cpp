@@ -1,0 +1,43 @@
+#include "config/effective_guard.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace hapticd::config {
+namespace {
+
+constexpr double kMaxVelocity_m_s = 1.5;
+constexpr double kFullForceTime_s =
+    0.005;  // the default slew limit reaches the force limit in this time
+constexpr double kRamp_s = 0.5;
+constexpr int kMaxStaleTicks = 3;
+
+template <class T>
+T first_of(const std::optional<T>& own, const std::optional<T>& global, T otherwise) {
+  return own ? *own : global.value_or(otherwise);
+}
+
+}  // namespace
+
+double smallest_actuator_N(const Device& device) {
+  if (device.axes.empty()) return 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Axis& axis : device.axes) smallest = std::min(smallest, axis.actuator.max_force_N);
+  return smallest;
+}
+
+EffectiveGuard effective_guard(const Guard& global, const Device& device) {
+  const Guard& own = device.guard;
+  EffectiveGuard guard;
+  guard.max_force_N = first_of(own.max_force_N, global.max_force_N, smallest_actuator_N(device));
+  guard.max_velocity_m_s =
+      first_of(own.max_velocity_m_s, global.max_velocity_m_s, kMaxVelocity_m_s);
+  guard.max_slew_N_s =
+      first_of(own.max_slew_N_s, global.max_slew_N_s, guard.max_force_N / kFullForceTime_s);
+  guard.ramp_s = first_of(own.ramp_s, global.ramp_s, kRamp_s);
+  guard.max_stale_ticks = first_of(own.max_stale_ticks, global.max_stale_ticks, kMaxStaleTicks);
+  return guard;
+}
+
+}  // namespace hapticd::config

@@ -1,0 +1,80 @@
+// What can be said of one key of a config, and the words of its enumerations. config/describe.h
+// says it of every key.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+
+#include "config/schema.h"
+
+namespace hapticd::config {
+
+/// What a text may be.
+enum class TextForm { any, name };
+/// Pattern of TextForm::name.
+inline constexpr const char* kNamePattern = "^[a-z][a-z0-9_]*$";
+
+/// All about one key but its type, which the field has, and its default, which the struct has.
+struct Key {
+  const char* about = "";  ///< one line for people
+  double min =
+      -std::numeric_limits<double>::infinity();  ///< of a number, or of each number of a list
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< `min` itself is out of range
+  const char* unit = "";
+  TextForm form = TextForm::any;  ///< of a text, or of each text of a list
+  std::size_t min_items = 0;
+  std::size_t max_items = std::numeric_limits<std::size_t>::max();
+};
+
+/// The words of an enumeration in the file, in the order of its values.
+template <class E>
+struct Words;
+template <>
+struct Words<EnableWhen> {
+  static constexpr std::array<std::string_view, 2> list{"on_command", "when_ready"};
+};
+template <>
+struct Words<AxisKind> {
+  static constexpr std::array<std::string_view, 1> list{"linear"};
+};
+template <>
+struct Words<Estimator> {
+  static constexpr std::array<std::string_view, 1> list{"backward_difference"};
+};
+template <>
+struct Words<ObserverMode> {
+  static constexpr std::array<std::string_view, 1> list{"off"};
+};
+template <>
+struct Words<Direction> {
+  static constexpr std::array<std::string_view, 3> list{"x", "y", "z"};
+};
+template <>
+struct Words<SimFailureKind> {
+  static constexpr std::array<std::string_view, 7> list{"nan",    "stuck", "jump", "missing",
+                                                        "disarm", "fault", "slow"};
+};
+template <>
+struct Words<Driver> {
+  static constexpr std::array<std::string_view, 1> list{"sim"};
+};
+template <>
+struct Words<Require> {
+  static constexpr std::array<std::string_view, 2> list{"passive", "none"};
+};
+
+/// The word for an enumeration's value.
+template <class E>
+constexpr std::string_view word_of(E value) {
+  return Words<E>::list[static_cast<std::size_t>(value)];
+}
+
+/// The one key of a scene entry that holds a T.
+template <class T>
+inline constexpr const char* kKindOf = nullptr;
+template <>
+inline constexpr const char* kKindOf<Plane> = "plane";
+
+}  // namespace hapticd::config

@@ -1,0 +1,114 @@
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "config/describe.h"
+#include "config/effective_guard.h"
+#include "config/print.h"
+
+namespace hapticd::config {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json axis_json(const Axis& axis, const control::AxisPlan& plan, Direction direction) {
+  Json model = nullptr;
+  if (axis.model) {
+    model = {{"mass_kg", axis.model->mass_kg},
+             {"damping_Ns_m", axis.model->damping_Ns_m},
+             {"mass_uncertainty", axis.model->mass_uncertainty},
+             {"damping_uncertainty", axis.model->damping_uncertainty}};
+  }
+  return {{"name", axis.name},
+          {"direction", word_of(direction)},
+          {"m_per_count", plan.unit_per_raw},
+          {"offset_m", plan.offset},
+          {"modulus_counts", plan.modulus_raw},
+          {"max_force_N", plan.max_effort},
+          {"stuck_s", or_null(axis.encoder.stuck_s)},
+          {"model", model}};
+}
+
+Json guard_json(const EffectiveGuard& guard) {
+  return {{"max_force_N", guard.max_force_N},
+          {"max_velocity_m_s", guard.max_velocity_m_s},
+          {"max_slew_N_s", guard.max_slew_N_s},
+          {"ramp_s", guard.ramp_s},
+          {"max_stale_ticks", guard.max_stale_ticks}};
+}
+
+Json device_json(const Compiled& compiled, std::size_t index) {
+  const Config& config = compiled.document.config;
+  const Device& device = config.devices[index];
+  const control::Plan& plan = compiled.program->plan();
+  const std::size_t first_axis = plan.devices[index].first_axis;
+  Json axes = Json::array();
+  for (std::size_t i = 0; i < device.axes.size(); ++i) {
+    axes.push_back(axis_json(device.axes[i], plan.axes[first_axis + i],
+                             device.kinematics.cartesian.directions[i]));
+  }
+  const check::DeviceAssumption& assumed = compiled.assumed[index];
+  return {
+      {"name", device.name},
+      {"driver", word_of(device.driver)},
+      {"axes", axes},
+      {"guard", guard_json(effective_guard(config.guard, device))},
+      {"assumed", {{"latency_s", assumed.latency_s}, {"min_damping_Ns_m", assumed.min_damping}}}};
+}
+
+Json object_json(const Config& config, const Plane& plane) {
+  Json devices = plane.devices;
+  if (plane.devices.empty()) {
+    for (const Device& device : config.devices) devices.push_back(device.name);
+  }
+  return {{"kind", kKindOf<Plane>},
+          {"name", plane.name},
+          {"devices", devices},
+          {"normal", plane.normal},
+          {"offset_m", plane.offset_m},
+          {"stiffness_N_m", plane.stiffness_N_m},
+          {"damping_Ns_m", plane.damping_Ns_m}};
+}
+
+Json loop_json(const Config& config) {
+  const Loop& loop = config.loop;
+  return {{"rate_Hz", loop.rate_Hz},
+          {"priority", loop.priority},
+          {"cpu", or_null(loop.cpu)},
+          {"max_gap_ticks", loop.max_gap_ticks},
+          {"max_missed_per_s", loop.max_missed_per_s}};
+}
+
+}  // namespace
+
+std::string plan_json(const Compiled& compiled) {
+  const Document& document = compiled.document;
+  const Config& config = document.config;
+  Json devices = Json::array();
+  for (std::size_t i = 0; i < config.devices.size(); ++i)
+    devices.push_back(device_json(compiled, i));
+  Json scene = Json::array();
+  for (const SceneObject& object : config.scene) {
+    scene.push_back(
+        std::visit([&](const auto& shape) { return object_json(config, shape); }, object));
+  }
+  const Json json = {{"config", document.path},
+                     {"digest", document.digest},
+                     {"loop", loop_json(config)},
+                     {"start", word_of(config.start.enable)},
+                     {"require", word_of(config.stability.require)},
+                     {"devices", devices},
+                     {"scene", scene},
+                     {"socket", config.control.socket},
+                     {"flight_dir", config.telemetry.flight_dir},
+                     {"flight_s", config.telemetry.flight_s},
+                     {"record", or_null(config.telemetry.record)}};
+  // A path may hold any bytes; JSON text may not.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace hapticd::config

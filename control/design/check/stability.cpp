@@ -1,0 +1,110 @@
+#include "control/design/check/stability.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace hapticd::check {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+/// Rounding of the small eigenvalue problems stays far below this: equality is not taken for a
+/// strict inequality.
+constexpr double kMargin = 1e-9;
+
+/// What the planes of one device ask of its damping: spring part (T/2) sum k nn', damper part sum b
+/// nn'.
+struct Demand {
+  Matrix spring, damper;
+};
+
+Demand demand(const control::Plan& plan, const control::DevicePlan& device) {
+  const Eigen::Index n = device.coordinates;
+  Demand sum{Matrix::Zero(n, n), Matrix::Zero(n, n)};
+  for (const control::PlaneContact& plane : plan.planes) {
+    if (plane.first_coordinate != device.first_coordinate) continue;
+    const Eigen::Map<const Eigen::VectorXd> normal(plane.normal.data(), n);
+    sum.spring += 0.5 * plan.period_s * plane.stiffness * normal * normal.transpose();
+    sum.damper += plane.damping * normal * normal.transpose();
+  }
+  return sum;
+}
+
+/// Largest s with det(demand - s Delta) = 0, Delta diagonal and positive: the share of the damping
+/// that is used.
+double share(const Matrix& demand, const Eigen::VectorXd& damping) {
+  const Eigen::VectorXd scale = damping.array().rsqrt();
+  const Matrix scaled = scale.asDiagonal() * demand * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
+}
+
+/// Largest factor c with spring * c + damper < Delta; the share grows with c, so bisection is safe.
+double stiffness_factor(const Demand& demand, const Eigen::VectorXd& damping) {
+  if (demand.spring.isZero(0)) return std::numeric_limits<double>::infinity();
+  const Matrix room = Matrix(damping.asDiagonal()) - demand.damper;
+  const Eigen::LLT<Matrix> factor(room);
+  if (factor.info() != Eigen::Success) return 0;
+  const Matrix half = factor.matrixL().solve(demand.spring);
+  const Matrix scaled = factor.matrixL().solve(half.transpose());
+  const Matrix symmetric = 0.5 * (scaled + scaled.transpose());
+  return 1 / Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly)
+                 .eigenvalues()
+                 .maxCoeff();
+}
+
+std::string text(const char* format, double a, double b, double c) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, a, b, c);
+  return buffer;
+}
+
+std::string missing_premise(const control::DevicePlan& device, const DeviceAssumption& assumed) {
+  if (assumed.min_damping.size() != device.axes)
+    return "no `model` with a damping for every axis: nothing can be proved";
+  for (const double damping : assumed.min_damping) {
+    if (!(damping > 0))
+      return "the smallest damping of an axis is zero: a passive spring needs damping in the "
+             "device";
+  }
+  if (assumed.latency_s != 0)
+    return "latency_s is not zero: no proof is known yet for a plane under latency";
+  return {};
+}
+
+PassiveAnswer answer(const control::Plan& plan, const control::DevicePlan& device,
+                     const DeviceAssumption& assumed) {
+  PassiveAnswer result;
+  result.why = missing_premise(device, assumed);
+  if (!result.why.empty()) return result;
+  const Eigen::Map<const Eigen::VectorXd> damping(assumed.min_damping.data(), device.axes);
+  const Demand needs = demand(plan, device);
+  result.damping_used = share(needs.spring + needs.damper, damping);
+  result.stiffness_factor = stiffness_factor(needs, damping);
+  // A force held for h instead of T: (h/2) k + (h/T) b < Delta, the whole demand grows with h/T.
+  result.longest_hold_s = result.damping_used > 0 ? plan.period_s / result.damping_used
+                                                  : std::numeric_limits<double>::infinity();
+  result.proved = result.damping_used < 1 - kMargin;
+  result.why = text(result.proved ? "K T/2 + B < device damping holds: uses %.1f %% of the damping "
+                                    "(K T/2 alone %.1f %%, B alone %.1f %%)"
+                                  : "K T/2 + B < device damping fails: needs %.1f %% of the "
+                                    "damping (K T/2 alone %.1f %%, B alone %.1f %%)",
+                    100 * result.damping_used, 100 * share(needs.spring, damping),
+                    100 * share(needs.damper, damping));
+  return result;
+}
+
+}  // namespace
+
+std::vector<PassiveAnswer> passive(const control::Plan& plan,
+                                   const std::vector<DeviceAssumption>& assumed) {
+  std::vector<PassiveAnswer> answers;
+  for (std::size_t i = 0; i < plan.devices.size(); ++i)
+    answers.push_back(answer(plan, plan.devices[i], assumed.at(i)));
+  return answers;
+}
+
+}  // namespace hapticd::check

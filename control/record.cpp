@@ -1,0 +1,83 @@
+#include "control/record.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+namespace hapticd::control {
+namespace {
+
+void put_samples(std::byte* slot, const RecordLayout& at,
+                 std::span<const AxisSample> samples) noexcept {
+  std::byte* raw = slot + at.raw.offset;
+  std::byte* age = slot + at.age_ns.offset;
+  std::byte* freshness = slot + at.freshness.offset;
+  for (const AxisSample& sample : samples) {
+    std::memcpy(raw, &sample.raw, 8);
+    std::memcpy(age, &sample.age_ns, 8);
+    *freshness++ = static_cast<std::byte>(sample.freshness);
+    raw += 8;
+    age += 8;
+  }
+}
+
+std::uint8_t input_flags(const TickInput& input) noexcept {
+  return static_cast<std::uint8_t>((input.enable ? 1u : 0u) | (input.clear_fault ? 2u : 0u));
+}
+
+double smallest(std::span<const double> values) noexcept {
+  double least = 1;
+  for (const double value : values) least = std::min(least, value);
+  return least;
+}
+
+}  // namespace
+
+RecordLayout record_layout(std::size_t axes, std::size_t coordinates,
+                           std::size_t devices) noexcept {
+  RecordLayout layout;
+  std::size_t offset = sizeof(RecordHeader);
+  const auto place = [&offset](RecordArray& array, std::size_t count, std::size_t bytes) {
+    array = {static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(count)};
+    offset += count * bytes;
+  };
+  for (RecordArray* array :
+       {&layout.raw, &layout.age_ns, &layout.delivered, &layout.q, &layout.qd, &layout.effort}) {
+    place(*array, axes, 8);
+  }
+  for (RecordArray* array : {&layout.x, &layout.scene_force, &layout.force})
+    place(*array, coordinates, 8);
+  place(layout.aux, devices, sizeof(Aux));
+  place(layout.freshness, axes, 1);
+  layout.bytes = static_cast<std::uint32_t>((offset + 7) / 8 * 8);
+  return layout;
+}
+
+void write_record(const Plan& plan, const State& state, const TickInput& input,
+                  const TickOutput& output, std::int64_t time_ns, const PhaseTimes& phases,
+                  std::uint32_t sequence, std::byte* slot) noexcept HAPTICD_NONBLOCKING {
+  std::construct_at(reinterpret_cast<RecordHeader*>(slot),
+                    RecordHeader{.tick = input.tick,
+                                 .time_ns = time_ns,
+                                 .missed_ticks = input.missed_ticks,
+                                 .fault_found = output.fault.found,
+                                 .fault_allowed = output.fault.allowed,
+                                 .ramp = smallest(state.ramp),
+                                 .phases = phases,
+                                 .limits = output.limits.bits(),
+                                 .fault_axis = output.fault.axis,
+                                 .fault_device = output.fault.device,
+                                 .fault = output.fault.code,
+                                 .host_fault = input.host_fault,
+                                 .mode = output.mode,
+                                 .flags = input_flags(input),
+                                 .sequence = sequence});
+  const RecordLayout& at = plan.record;
+  std::memset(slot + at.bytes - 8, 0, 8);  // the padding behind the last array
+  put_samples(slot, at, input.axes);
+  std::memcpy(slot + at.delivered.offset, input.delivered.data(), input.delivered.size_bytes());
+  std::memcpy(slot + at.q.offset, state.recorded.data(), state.recorded.size_bytes());
+  std::memcpy(slot + at.aux.offset, input.aux.data(), input.aux.size_bytes());
+}
+
+}  // namespace hapticd::control

@@ -1,0 +1,157 @@
+#include "daemon/cycle.h"
+
+#include <poll.h>
+#include <time.h>
+
+#include <algorithm>
+
+#include "control/core/capacity.h"
+#include "control/core/flush_denormals.h"
+
+namespace hapticd::daemon {
+namespace {
+
+std::int32_t between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  constexpr std::int64_t kLongest_ns = 2'147'483'647;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(to_ns - from_ns, 0, kLongest_ns));
+}
+
+}  // namespace
+
+Cycle::Cycle(std::vector<drivers::Device*> devices, const control::Plan& plan)
+    : samples_(plan.axes.size()), aux_(plan.devices.size()) {
+  for (auto& delivered : delivered_) delivered.assign(plan.axes.size(), 0.0);
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    slots_.push_back({devices[i], plan.devices[i].first_axis, plan.devices[i].axes, false});
+  }
+}
+
+void Cycle::run(build::Program& program, const CycleInput& input, Now now,
+                rt::SpscRing* ring) noexcept HAPTICD_NONBLOCKING {
+  const FlushDenormals flush_denormals;
+  const std::int64_t woke_ns = now();
+  request_all(input.time);
+  collect_all(input.time, now);
+  const std::int64_t collected_ns = now();
+
+  const control::TickInput tick = tick_input(program.state(), input);
+  output_ = control::step(program.plan(), program.state(), tick);
+  const std::int64_t stepped_ns = now();
+
+  command_all();
+  if (output_.mode == control::Mode::fault ||
+      (output_.mode == control::Mode::idle && !input.enable))
+    set_armed(false);
+  phases_ = {.wake_ns = between(input.time.start_ns, woke_ns),
+             .collect_ns = between(woke_ns, collected_ns),
+             .step_ns = between(collected_ns, stepped_ns),
+             .command_ns = between(stepped_ns, now())};
+  record(program, tick, input.time.start_ns, ring);
+  last_ = 1 - last_;
+}
+
+void Cycle::request_all(const drivers::TickTime& time) noexcept {
+  for (AxisSample& sample : samples_) sample.freshness = Freshness::missing;
+  for (Slot& slot : slots_) {
+    slot.complete = false;
+    slot.device->request(time);
+  }
+}
+
+void Cycle::collect_all(const drivers::TickTime& time, Now now) noexcept {
+  while (collect_waiting()) {
+    if (!wait_for_buses(time.deadline_ns - now())) return;
+  }
+}
+
+/// One round over the devices that still owe samples. True: some still do.
+bool Cycle::collect_waiting() noexcept {
+  bool waiting = false;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.complete) continue;
+    const std::span<AxisSample> samples(&samples_[slot.first_axis], slot.axes);
+    slot.complete = slot.device->collect(samples, aux_[i]) == drivers::Collected::complete;
+    waiting = waiting || !slot.complete;
+  }
+  return waiting;
+}
+
+/// Sleeps until one of the buses has something, for all of them together. False: time is up, or
+/// there is nothing to wait for.
+bool Cycle::wait_for_buses(std::int64_t timeout_ns) noexcept {
+  std::array<pollfd, kMaxDevices> fds;
+  nfds_t count = 0;
+  for (const Slot& slot : slots_) {
+    const int fd = slot.complete ? -1 : slot.device->wait_fd();
+    if (fd >= 0) fds[count++] = {.fd = fd, .events = POLLIN, .revents = 0};
+  }
+  if (count == 0 || timeout_ns <= 0) return false;
+  const timespec timeout{.tv_sec = static_cast<time_t>(timeout_ns / 1'000'000'000),
+                         .tv_nsec = static_cast<long>(timeout_ns % 1'000'000'000)};
+  return ppoll(fds.data(), count, &timeout, nullptr) > 0;
+}
+
+/// Adds what the devices said of themselves. Forces are enabled only once all power stages are on.
+control::TickInput Cycle::tick_input(const control::State& state,
+                                     const CycleInput& input) noexcept {
+  control::TickInput tick{.tick = input.time.tick,
+                          .missed_ticks = input.missed_ticks,
+                          .host_fault = input.host_fault,
+                          .host_fault_found = input.host_fault_found,
+                          .host_fault_allowed = input.host_fault_allowed,
+                          .clear_fault = input.clear_fault,
+                          .axes = samples_,
+                          .aux = aux_,
+                          .delivered = delivered_[last_]};
+  armed_ = true;
+  for (std::size_t i = 0; i < aux_.size(); ++i) {
+    armed_ = armed_ && aux_[i].armed;
+    if (tick.host_fault != Fault::none) continue;
+    const bool dropped_out = state.mode == control::Mode::enabled && !aux_[i].armed;
+    if (!aux_[i].faulted && !dropped_out) continue;
+    tick.host_fault = aux_[i].faulted ? Fault::device : Fault::disarmed;
+    tick.host_fault_device = static_cast<std::uint16_t>(i);
+  }
+  if (input.enable && state.mode != control::Mode::fault) set_armed(true);
+  tick.enable = input.enable && armed_;
+  return tick;
+}
+
+void Cycle::command_all() noexcept {
+  const bool fault = output_.mode == control::Mode::fault;
+  for (const Slot& slot : slots_) {
+    const std::span<double> delivered(&delivered_[1 - last_][slot.first_axis], slot.axes);
+    if (fault) {
+      slot.device->stop();
+      std::fill(delivered.begin(), delivered.end(), 0.0);
+    } else {
+      slot.device->command(output_.effort.subspan(slot.first_axis, slot.axes), delivered);
+    }
+  }
+}
+
+void Cycle::set_armed(bool armed) noexcept {
+  if (armed == arm_wanted_) return;
+  arm_wanted_ = armed;
+  for (const Slot& slot : slots_) slot.device->set_armed(armed);
+}
+
+void Cycle::record(const build::Program& program, const control::TickInput& tick,
+                   std::int64_t start_ns, rt::SpscRing* ring) noexcept {
+  if (ring == nullptr) return;
+  std::byte* slot = ring->reserve();
+  if (slot != nullptr) {
+    control::write_record(program.plan(), program.state(), tick, output_, start_ns, phases_,
+                          sequence_, slot);
+    ring->commit();
+  }
+  ++sequence_;  // counts lost records too, so that a gap shows them
+}
+
+void Cycle::stop() noexcept {
+  for (const Slot& slot : slots_) slot.device->stop();
+  set_armed(false);
+}
+
+}  // namespace hapticd::daemon

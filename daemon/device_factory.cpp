@@ -1,0 +1,20 @@
+#include "daemon/device_factory.h"
+
+#include "sim/sim_device.h"
+
+namespace hapticd::daemon {
+
+std::vector<std::unique_ptr<drivers::Device>> make_devices(const config::Compiled& compiled) {
+  std::vector<std::unique_ptr<drivers::Device>> devices;
+  const auto& described = compiled.document.config.devices;
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    switch (described[i].driver) {
+      case config::Driver::sim:
+        devices.push_back(std::make_unique<sim::SimDevice>(compiled.simulated[i]));
+        break;
+    }
+  }
+  return devices;
+}
+
+}  // namespace hapticd::daemon

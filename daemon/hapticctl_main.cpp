@@ -1,0 +1,113 @@
+// hapticctl: the tool for people.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "daemon/ctl_check.h"
+#include "daemon/ctl_simulate.h"
+#include "daemon/ctl_verbs.h"
+
+namespace {
+
+using namespace hapticd;
+using daemon::Request;
+using daemon::Verb;
+
+/// What the command line says; the verb that was named fills `run`.
+struct CommandLine {
+  CLI::App app{"Asks and tells hapticd, and works on its configs and recordings without it."};
+  std::string socket = daemon::default_socket();
+  bool json = false;
+  bool unproven = false;
+  bool csv = false;
+  std::string input, output;
+  daemon::SimulateOptions simulate;
+  std::function<ExitCode()> run;
+};
+
+CLI::App* add_verb(CommandLine& line, const char* name, const char* help,
+                   std::function<ExitCode()> run) {
+  CLI::App* verb = line.app.add_subcommand(name, help);
+  verb->add_flag("--json", line.json, "answer in JSON");
+  verb->callback([&line, run = std::move(run)] { line.run = run; });
+  return verb;
+}
+
+CLI::App* add_daemon_verb(CommandLine& line, Verb which, const char* help) {
+  const auto name = std::string(daemon::kVerbNames[static_cast<std::size_t>(which)]);
+  CLI::App* verb = add_verb(line, name.c_str(), help, [&line, which] {
+    return daemon::run_verb(Request{which, line.unproven}, line.socket, line.json);
+  });
+  verb->add_option("--socket", line.socket, "where hapticd listens (or set HAPTICD_SOCKET)")
+      ->capture_default_str()
+      ->type_name("PATH");
+  return verb;
+}
+
+void add_file_verbs(CommandLine& line) {
+  CLI::App* check =
+      add_verb(line, "check", "validate a config, print its plan and whether forces may be enabled",
+               [&line] { return daemon::check_config(line.input, line.json); });
+  check->add_option("FILE", line.input, "the config")->required();
+
+  CLI::App* simulate =
+      add_verb(line, "simulate", "run a config in virtual time, every tick into a recording",
+               [&line] { return daemon::run_simulate(line.input, line.simulate, line.json); });
+  simulate->add_option("CONFIG", line.input, "the config")->required();
+  simulate->add_option("--duration", line.simulate.duration_s, "seconds of virtual time")
+      ->required()
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("S");
+  simulate->add_option("-o,--output", line.simulate.output, "the recording, replaced if it exists")
+      ->required()
+      ->type_name("FILE");
+  simulate->add_flag("--unproven", line.simulate.unproven,
+                     "enable although stability.require is not met");
+
+  CLI::App* exports = add_verb(line, "export", "write a recording in another format", [&line] {
+    return daemon::run_export(line.input, line.output, line.json);
+  });
+  exports->add_option("FILE", line.input, "the recording")->required();
+  exports->add_flag("--csv", line.csv, "as CSV: the only format so far")->required();
+  exports
+      ->add_option("-o,--output", line.output,
+                   "where to (default: FILE.csv; - for standard output)")
+      ->type_name("OUT");
+}
+
+void describe(CommandLine& line) {
+  line.app.set_version_flag("--version", "hapticctl " HAPTICD_VERSION);
+  line.app.require_subcommand(1);
+  add_daemon_verb(line, Verb::status, "state, faults, stability, how well the loop runs");
+  add_daemon_verb(line, Verb::enable, "turn forces on, or leave a fault whose cause is gone")
+      ->add_flag("--unproven", line.unproven,
+                 "although nothing is proved (stability.require: none); it is logged");
+  add_daemon_verb(line, Verb::disable, "ramp forces out");
+  add_daemon_verb(line, Verb::estop, "zero force in the next tick");
+  add_daemon_verb(line, Verb::reload, "load the config anew");
+  add_file_verbs(line);
+  line.app.footer(
+      "Exit: 0 ok, 1 the answer is no, 64 usage, 65 bad data, 66 no such file, 69 no hapticd, 73 "
+      "cannot write,\n"
+      "75 try again, 77 no permission.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CommandLine line;
+    describe(line);
+    try {
+      line.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return static_cast<int>(line.app.exit(error) == 0 ? ExitCode::ok : ExitCode::usage);
+    }
+    return static_cast<int>(line.run());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "hapticctl: a defect of hapticctl: %s\n", error.what());
+    return static_cast<int>(ExitCode::software);
+  }
+}

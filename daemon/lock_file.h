@@ -1,0 +1,39 @@
+// Locks between processes: one per control socket, one per physical device, so that two configs
+// cannot drive one device. They are advisory locks on small files (flock), so the kernel lets go of
+// them when a process dies in whatever way.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "control/core/result.h"
+
+namespace hapticd::daemon {
+
+/// Held as long as the object lives. The file stays: removing it would let two processes lock two
+/// files of one name.
+class LockFile {
+ public:
+  /// Locks `path`, made if need be, and writes this process' id into it. `what` names the thing
+  /// locked, for the error "another hapticd (pid 123) holds the control socket /run/..." with code
+  /// try_again. A file that may not be written is locked all the same if it may be read. Other
+  /// errors: no_permission, cannot_create.
+  static Result<LockFile> acquire(const std::string& path, const std::string& what);
+  LockFile(LockFile&& other) noexcept;
+  LockFile& operator=(LockFile&& other) noexcept;
+  ~LockFile();
+
+ private:
+  explicit LockFile(int fd) : fd_(fd) {}
+  int fd_ = -1;
+};
+
+/// Locks a physical device by DeviceInfo::lock_name in each of `directories`: a hardened service
+/// and a program that a user starts by hand can write to different ones, but read each other's.
+/// Fails where none of them can hold the lock.
+Result<std::vector<LockFile>> lock_device(const std::string& lock_name,
+                                          const std::vector<std::string>& directories);
+
+/// Where device locks stand: the service's own directory, and the one for all.
+std::vector<std::string> device_lock_directories();
+
+}  // namespace hapticd::daemon

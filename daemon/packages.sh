@@ -1,0 +1,48 @@
+# shellcheck shell=bash
+# What has to be installed to build, test and check hapticd on Debian 12, and how. Sourced by quickstart.sh and
+# tests/run.sh; the one place that names packages.
+
+# shellcheck disable=SC2034  # used by the scripts that source this file
+{
+  packages_build=(g++ cmake ninja-build pkg-config libeigen3-dev libexpected-dev libyaml-cpp-dev libspdlog-dev
+    libcli11-dev nlohmann-json3-dev libsystemd-dev scdoc)
+  packages_tests=(libgtest-dev libgmock-dev librapidcheck-dev systemd man-db shellcheck clang-format-14)
+  packages_clang=(clang-14)
+  packages_rtsan=(clang-22 libclang-rt-22-dev)
+  packages_bench=(libbenchmark-dev)
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo > /dev/null; then
+    sudo "$@"
+  else
+    echo "needs root, or sudo, to run: $*" >&2
+    return 77
+  fi
+}
+
+# missing_packages <package>...: those that are not installed, one a line.
+missing_packages() {
+  local package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2> /dev/null)" = installed ] || echo "$package"
+  done
+}
+
+# install_packages <package>...: installs what is missing; touches neither network nor apt when nothing is.
+install_packages() {
+  if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
+    echo "this is not Debian; what is needed, by Debian's names: $*" >&2
+    echo "install them, then run the cmake commands of README.md" >&2
+    return 69
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  echo "installing: ${missing[*]}"
+  as_root apt-get -q -o Acquire::Retries=3 update < /dev/null || return
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Acquire::Retries=3 --no-install-recommends install \
+    "${missing[@]}" < /dev/null
+}

@@ -1,0 +1,100 @@
+#include "daemon/reload_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace hapticd::daemon {
+namespace {
+
+/// Collects the keys that differ.
+class Differences {
+ public:
+  void compare(bool same, const std::string& key) {
+    if (same) return;
+    lines_.push_back(fmt::format(
+        "{} changed: disable first, stop hapticd and start it with the new config", key));
+  }
+  std::vector<std::string> take() { return std::move(lines_); }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+void compare_loop(const config::Loop& a, const config::Loop& b, Differences& found) {
+  found.compare(a.rate_Hz == b.rate_Hz, "loop.rate_Hz");
+  found.compare(a.priority == b.priority, "loop.priority");
+  found.compare(a.cpu == b.cpu, "loop.cpu");
+  found.compare(a.max_gap_ticks == b.max_gap_ticks, "loop.max_gap_ticks");
+  found.compare(a.max_missed_per_s == b.max_missed_per_s, "loop.max_missed_per_s");
+}
+
+void compare_axis(const config::Axis& a, const config::Axis& b, const std::string& key,
+                  Differences& found) {
+  config::Encoder encoder = b.encoder;
+  encoder.stuck_s = a.encoder.stuck_s;  // a watch of the guard, not a property of the axis
+  found.compare(a.name == b.name, key + ".name");
+  found.compare(a.kind == b.kind, key + ".kind");
+  found.compare(a.encoder == encoder, key + ".encoder");
+  found.compare(a.actuator == b.actuator, key + ".actuator");
+}
+
+bool same_plant(const sim::AxisOptions& a, const sim::AxisOptions& b) {
+  const auto all = [](const sim::AxisOptions& o) {
+    return std::tie(o.mass_kg, o.damping_Ns_m, o.coulomb_N, o.delay_s, o.position_m, o.counts_per_m,
+                    o.encoder_bits, o.noise_counts, o.dac_step_N, o.max_effort_N);
+  };
+  return all(a) == all(b);
+}
+
+/// The plant as it was compiled: what `sim` leaves out follows the model, so the file alone does
+/// not tell. ramp_s is not held against the other: it follows the guard, which may change.
+void compare_simulated(const sim::DeviceOptions& a, const sim::DeviceOptions& b,
+                       const std::string& key, Differences& found) {
+  const bool axes =
+      std::equal(a.axes.begin(), a.axes.end(), b.axes.begin(), b.axes.end(), same_plant);
+  found.compare(axes, key + ".sim.axes (or the model that a simulated axis takes its values from)");
+}
+
+void compare_sim(const config::Sim& a, const config::Sim& b, const std::string& key,
+                 Differences& found) {
+  found.compare(a.hand == b.hand, key + ".sim.hand");
+  found.compare(a.substeps == b.substeps, key + ".sim.substeps");
+  found.compare(a.seed == b.seed, key + ".sim.seed");
+  found.compare(a.failures == b.failures, key + ".sim.failures");
+}
+
+void compare_device(const config::Device& a, const config::Device& b, const std::string& key,
+                    Differences& found) {
+  found.compare(a.name == b.name, key + ".name");
+  found.compare(a.driver == b.driver, key + ".driver");
+  found.compare(a.kinematics == b.kinematics, key + ".kinematics");
+  compare_sim(a.sim.value_or(config::Sim{}), b.sim.value_or(config::Sim{}), key, found);
+  found.compare(a.axes.size() == b.axes.size(), key + ".axes (their number)");
+  for (std::size_t i = 0; i < std::min(a.axes.size(), b.axes.size()); ++i) {
+    compare_axis(a.axes[i], b.axes[i], fmt::format("{}.axes[{}]", key, i), found);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> reload_obstacles(const config::Compiled& running,
+                                          const config::Compiled& fresh) {
+  const config::Config& a = running.document.config;
+  const config::Config& b = fresh.document.config;
+  Differences found;
+  compare_loop(a.loop, b.loop, found);
+  found.compare(a.control.socket == b.control.socket, "control.socket");
+  found.compare(a.devices.size() == b.devices.size(), "devices (their number)");
+  for (std::size_t i = 0; i < std::min(a.devices.size(), b.devices.size()); ++i) {
+    const std::string key = fmt::format("devices[{}]", i);
+    compare_device(a.devices[i], b.devices[i], key, found);
+    if (i < running.simulated.size() && i < fresh.simulated.size()) {
+      compare_simulated(running.simulated[i], fresh.simulated[i], key, found);
+    }
+  }
+  return found.take();
+}
+
+}  // namespace hapticd::daemon

@@ -1,0 +1,64 @@
+// How well a run did: counted by the servo thread, gathered by the supervisor, told at the end, on
+// SIGUSR1 and by `hapticctl status`.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/protocol.h"
+#include "daemon/realtime.h"
+#include "daemon/servo_shared.h"
+
+namespace hapticd::daemon {
+
+/// Of one phase of all ticks [us]; wake: lateness, the others: duration.
+struct PhaseTimesSummary {
+  double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;
+};
+
+/// What the kernel counted for the servo thread.
+struct ThreadUse {
+  std::uint64_t minor_faults = 0, major_faults = 0;
+  std::uint64_t voluntary_switches = 0, involuntary_switches = 0;
+};
+
+struct FaultCount {
+  Fault code = Fault::none;
+  std::uint64_t count = 0;
+  std::string last;      ///< described
+  double last_at_s = 0;  ///< after the start of the loop
+};
+
+struct Summary {
+  double duration_s = 0;
+  double rate_Hz = 0;
+  std::uint64_t ticks = 0, late_wakes = 0, overruns = 0, gaps = 0, missed_ticks = 0,
+                samples_held = 0;
+  std::array<std::uint64_t, kPhases> missed_by{};
+  std::array<PhaseTimesSummary, kPhases> times{};
+  double largest_force_N = 0;
+  std::vector<FaultCount> faults;
+  std::uint64_t records_dropped = 0, records_lost = 0;
+  std::optional<ThreadUse> thread;  ///< since the first tick; none: the kernel does not tell
+  std::string kernel;
+  bool preempt_rt = false;
+  RealtimeReport realtime;
+  std::optional<double> load_average;  ///< over one minute
+  bool unproven = false;               ///< forces were enabled without a proof
+};
+
+/// Counters and histograms; the caller adds the rest.
+void take_counters(const ServoCounters& counters, Summary& summary);
+
+/// Of a thread of this process, by kernel id, since it was made.
+std::optional<ThreadUse> read_thread_use(int thread_id);
+/// The same from the texts of /proc/.../stat and /proc/.../status.
+std::optional<ThreadUse> parse_thread_use(const std::string& stat, const std::string& status);
+ThreadUse operator-(const ThreadUse& now, const ThreadUse& then) noexcept;
+
+std::string to_table(const Summary& summary);
+Json to_json(const Summary& summary);
+
+}  // namespace hapticd::daemon

@@ -1,0 +1,141 @@
+#include "sim/sim_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+#include "sim/check_options.h"
+
+namespace hapticd::sim {
+namespace {
+
+// A longer gap is not made up for: after a suspended night the servo thread would simulate all of
+// it in one tick.
+constexpr std::int64_t kMaxCatchUpTicks = 1000;
+constexpr std::int64_t kBeforeScript = std::numeric_limits<std::int64_t>::min() / 2;
+
+std::int64_t processor_time_ns() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+void burn(std::int64_t duration_ns) noexcept {
+  if (duration_ns <= 0) return;
+  const std::int64_t end_ns = processor_time_ns() + duration_ns;
+  while (processor_time_ns() < end_ns) {
+  }
+}
+
+}  // namespace
+
+SimDevice::SimDevice(DeviceOptions options)
+    : options_(std::move(options)), failures_({}, options_.period_s) {}
+
+Result<drivers::DeviceInfo> SimDevice::connect() {
+  const std::string problem = first_problem(options_);
+  if (!problem.empty()) {
+    return fail(ExitCode::bad_data, "simulated device " + options_.name + ": " + problem);
+  }
+  const TimeGrid grid{options_.period_s, options_.substeps};
+  axes_.clear();
+  axes_.reserve(options_.axes.size());
+  for (std::size_t i = 0; i < options_.axes.size(); ++i) {
+    axes_.emplace_back(options_.axes[i], options_.hand, grid, options_.seed, i);
+  }
+  samples_.assign(options_.axes.size(), AxisSample{});
+  failures_ = Failures(options_.failures, options_.period_s);
+  ramp_substeps_ = std::llround(options_.ramp_s / grid.substep_s());
+  started_ = arm_wanted_ = armed_ = dropped_out_ = false;
+  return drivers::DeviceInfo{.model = "simulated device",
+                             .serial = {},
+                             .lock_name = {},
+                             .timing = drivers::Timing::in_phase,
+                             .worst_sample_age_s = 0};
+}
+
+void SimDevice::disconnect() noexcept {
+  arm_wanted_ = armed_ = false;
+  for (Axis& axis : axes_) axis.cut();
+}
+
+void SimDevice::request(const drivers::TickTime& time) noexcept {
+  if (!started_) {
+    started_ = true;
+    first_tick_ = tick_ = time.tick;
+  }
+  run_until(time.tick);
+  failures_.move_to(tick_ - first_tick_);
+  measure(time.start_ns);
+}
+
+void SimDevice::run_until(std::int64_t tick) noexcept {
+  std::int64_t left = std::min(tick - tick_, kMaxCatchUpTicks);
+  for (; left > 0; --left) run_tick();
+  tick_ = std::max(tick, tick_);
+}
+
+void SimDevice::run_tick() noexcept {
+  const std::int64_t script_substep =
+      armed_ ? (tick_ - armed_tick_) * options_.substeps - ramp_substeps_ : kBeforeScript;
+  for (Axis& axis : axes_) axis.run_tick(script_substep);
+  ++tick_;
+}
+
+void SimDevice::measure(std::int64_t stamp_ns) noexcept {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const double counts = axes_[i].read_encoder(failures_.jump_m(i));
+    AxisSample& sample = samples_[i];
+    const bool missing = failures_.on(FailureKind::missing, i);
+    if (!missing && !failures_.on(FailureKind::stuck, i)) sample.raw = counts;
+    if (failures_.on(FailureKind::nan, i)) sample.raw = kNaN;
+    sample.freshness = missing ? Freshness::missing : Freshness::fresh;
+    sample.homed = true;
+    sample.stamp_ns = stamp_ns;
+  }
+}
+
+drivers::Collected SimDevice::collect(std::span<AxisSample> axes, Aux& aux) noexcept {
+  switch_power();
+  burn(failures_.take_burn_ns());
+  std::copy_n(samples_.begin(), std::min(samples_.size(), axes.size()), axes.begin());
+  aux = Aux{};
+  aux.armed = armed_;
+  aux.faulted = failures_.on(FailureKind::fault);
+  return drivers::Collected::complete;
+}
+
+// A power stage that dropped out stays off until it is asked for again.
+void SimDevice::switch_power() noexcept {
+  const bool drops_out = failures_.on(FailureKind::disarm);
+  if (drops_out && !dropped_out_) arm_wanted_ = false;
+  dropped_out_ = drops_out;
+  const bool armed = arm_wanted_ && !drops_out;
+  if (armed == armed_) return;
+  armed_ = armed;
+  armed_tick_ = tick_;
+  for (Axis& axis : axes_) {
+    axis.cut();
+    axis.restart_script();
+  }
+}
+
+void SimDevice::command(std::span<const double> effort, std::span<double> delivered) noexcept {
+  const std::size_t count = std::min({axes_.size(), effort.size(), delivered.size()});
+  for (std::size_t i = 0; i < count; ++i) {
+    delivered[i] = armed_ ? axes_[i].command(effort[i]) : 0;
+  }
+}
+
+void SimDevice::stop() noexcept {
+  for (Axis& axis : axes_) axis.command(0);
+}
+
+std::string_view SimDevice::fault_text() const noexcept {
+  return failures_.on(FailureKind::fault) ? "scripted failure of a simulated device" : "";
+}
+
+}  // namespace hapticd::sim

@@ -1,0 +1,66 @@
+// A simulated device behind the interface that real ones have. It runs inside the servo thread:
+// after connect() it neither allocates, nor locks, logs or throws, and it needs no thread and no
+// clock. Device time is the tick's number times the period, so that a run in virtual time and one
+// in real time with the same ticks give the same bits.
+//
+//   request   the plants run from the last tick to this one; the encoders are read
+//   collect   hands out the readings; the power stage goes on or off here
+//   command   efforts from now on (after each axis' delay)
+//
+// Missed ticks are time in which the last effort is held, as on a real device.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "drivers/device.h"
+#include "sim/axis.h"
+#include "sim/failures.h"
+#include "sim/options.h"
+
+namespace hapticd::sim {
+
+class SimDevice final : public drivers::Device {
+ public:
+  explicit SimDevice(DeviceOptions options);
+
+  /// Starts the truth anew: two runs after two connects are the same. Errors: options out of range.
+  Result<drivers::DeviceInfo> connect() override;
+  void disconnect() noexcept override;
+
+  void request(const drivers::TickTime& time) noexcept override;
+  drivers::Collected collect(std::span<AxisSample> axes, Aux& aux) noexcept override;
+  void command(std::span<const double> effort, std::span<double> delivered) noexcept override;
+  void set_armed(bool armed) noexcept override { arm_wanted_ = armed; }
+  void stop() noexcept override;
+  std::string_view fault_text() const noexcept override;
+
+  const DeviceOptions& options() const noexcept { return options_; }
+  /// As of the last request(); axis < options().axes.size(), after connect().
+  const Truth& truth(std::size_t axis) const noexcept { return axes_[axis].truth(); }
+  /// Positions [m] of an axis at the ends of the sub-steps of the last period that was simulated.
+  std::span<const double> trace(std::size_t axis) const noexcept { return axes_[axis].trace(); }
+
+ private:
+  void run_until(std::int64_t tick) noexcept;
+  void run_tick() noexcept;
+  void measure(std::int64_t stamp_ns) noexcept;
+  void switch_power() noexcept;
+
+  DeviceOptions options_;
+  std::vector<Axis> axes_;
+  std::vector<AxisSample> samples_;
+  Failures failures_;
+  std::int64_t ramp_substeps_ = 0;
+  std::int64_t first_tick_ = 0;
+  std::int64_t tick_ = 0;        ///< the plants stand at the start of this one
+  std::int64_t armed_tick_ = 0;  ///< the power stage went on in this one
+  bool started_ = false;         ///< first_tick_ is known
+  bool arm_wanted_ = false;
+  bool armed_ = false;
+  bool dropped_out_ = false;
+};
+
+}  // namespace hapticd::sim

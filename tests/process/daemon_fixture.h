@@ -1,0 +1,67 @@
+// hapticd as a process, with a config, a control socket and recordings in a directory of the test's
+// own. The loop's limits on missed ticks are out of the way unless a test sets them: a busy machine
+// must not fail a test.
+#pragma once
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/protocol.h"
+#include "daemon/recording.h"
+#include "tests/process/process.h"
+#include "tests/unit/daemon/temp_dir.h"
+
+namespace hapticd::test {
+
+/// What tests vary. A hand presses the axis into the wall from the end of the ramp on, so that
+/// there is a force.
+struct Scenario {
+  std::string enable = "when_ready";
+  std::string require = "passive";
+  double rate_Hz = 1000;
+  double stiffness_N_m = 1000;
+  double ramp_s = 0.05;
+  int max_gap_ticks = 100'000;
+  std::string failures = {};  ///< items of a YAML flow list
+  std::string stuck_s = "null";
+  std::string flight_dir = {};  ///< empty: in the test's directory
+  bool record = true;
+};
+
+class DaemonTest : public testing::Test {
+ protected:
+  /// Writes the config and starts hapticd on it. `prefix`: what runs it, "setpriv ..."; `more`:
+  /// arguments.
+  void start(const Scenario& scenario, std::vector<std::string> more = {},
+             std::vector<std::string> prefix = {}, const Process::Environment& environment = {});
+  void write_config(const Scenario& scenario) const;
+  void write_file(const std::string& name, const std::string& text) const;
+
+  /// hapticctl; exit code, with what it printed in ctl_out and ctl_err. The socket is named by the
+  /// environment.
+  int ctl(std::vector<std::string> arguments);
+  /// `hapticctl status --json`; null when nobody answers.
+  daemon::Json status();
+  bool reaches(const std::string& state);
+  /// The hand feels the wall.
+  bool presses();
+  bool passes_tick(int tick);
+  /// The daemon's log holds this, now or soon.
+  bool logs(const std::string& text);
+  bool output_has(const std::string& text);
+  /// Ends it by SIGTERM.
+  int stop();
+  daemon::Recording recording() const;
+
+  TempDir dir_;
+  std::string config_ = dir_.file("config.yaml");
+  std::string socket_ = dir_.file("h.sock");
+  std::string record_ = dir_.file("all.hapticrec");
+  std::unique_ptr<Process> hapticd_;
+  std::string ctl_out_, ctl_err_;
+};
+
+}  // namespace hapticd::test

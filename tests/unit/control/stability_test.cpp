@@ -1,0 +1,77 @@
+#include "control/design/check/stability.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/program_fixture.h"
+
+namespace hapticd::check {
+namespace {
+
+PassiveAnswer answer(build::ProgramSpec spec, std::vector<double> damping, double latency_s = 0) {
+  const build::Program program(std::move(spec));
+  return passive(program.plan(),
+                 {{.name = "left", .latency_s = latency_s, .min_damping = std::move(damping)}})
+      .at(0);
+}
+
+build::ProgramSpec walls(std::size_t axes, std::vector<control::PlaneContact> planes) {
+  auto spec = test::spec_of(axes);
+  spec.planes = std::move(planes);
+  return spec;
+}
+
+TEST(Passive, OneAxisIsColgatesCondition) {
+  const auto yes = answer(walls(1, {test::wall(1000, 0.2)}), {0.71});
+  EXPECT_TRUE(yes.proved);
+  EXPECT_NEAR(yes.damping_used, 0.7 / 0.71, 1e-12);
+  EXPECT_NEAR(yes.stiffness_factor, 0.51 / 0.5, 1e-12);
+  EXPECT_NEAR(yes.longest_hold_s, 1e-3 * 0.71 / 0.7, 1e-15);
+  EXPECT_FALSE(answer(walls(1, {test::wall(1000, 0.2)}), {0.69}).proved);
+}
+
+TEST(Passive, EqualityIsNoProof) {
+  EXPECT_FALSE(answer(walls(1, {test::wall(1000, 0)}), {0.5}).proved);
+}
+
+TEST(Passive, PaperTwosWallIsNot) {  // only K <= 44 N/m would be: 2 b / T
+  const auto no = answer(walls(1, {test::wall(1000, 1)}), {0.022});
+  EXPECT_FALSE(no.proved);
+  EXPECT_EQ(no.stiffness_factor, 0.0) << "B alone is too much";
+  EXPECT_TRUE(answer(walls(1, {test::wall(43.9, 0)}), {0.022}).proved);
+  EXPECT_FALSE(answer(walls(1, {test::wall(44.1, 0)}), {0.022}).proved);
+}
+
+TEST(Passive, LatencyMissingModelAndUndampedAxisAreNotCertified) {
+  const auto spec = walls(1, {test::wall(10, 0)});
+  EXPECT_NE(answer(spec, {1.0}, 1e-4).why.find("latency"), std::string::npos);
+  EXPECT_NE(answer(spec, {}).why.find("model"), std::string::npos);
+  EXPECT_NE(answer(spec, {0.0}).why.find("damping"), std::string::npos);
+  for (const auto& no : {answer(spec, {1.0}, 1e-4), answer(spec, {}), answer(spec, {0.0})})
+    EXPECT_FALSE(no.proved);
+}
+
+TEST(Passive, PlanesInACornerAddUpAndRightAnglesDoNotDisturb) {
+  control::PlaneContact floor = test::wall(1000, 0, 2);
+  floor.normal = {0, 1, 0};
+  EXPECT_NEAR(answer(walls(2, {test::wall(1000, 0, 2), floor}), {1, 1}).damping_used, 0.5, 1e-12);
+  EXPECT_NEAR(
+      answer(walls(2, {test::wall(1000, 0, 2), test::wall(1000, 0, 2)}), {1, 1}).damping_used, 1.0,
+      1e-12);
+}
+
+TEST(Passive, ObliquePlaneWeighsTheDampingOfEachAxis) {
+  control::PlaneContact plane = test::wall(1000, 0, 2);
+  plane.normal = {0.6, 0.8, 0};
+  // rank one: share = k T/2 n' Delta^-1 n
+  EXPECT_NEAR(answer(walls(2, {plane}), {2, 0.5}).damping_used, 0.5 * (0.36 / 2 + 0.64 / 0.5),
+              1e-12);
+}
+
+TEST(Passive, EmptySceneNeedsNothing) {
+  const auto yes = answer(walls(1, {}), {1e-6});
+  EXPECT_TRUE(yes.proved);
+  EXPECT_EQ(yes.damping_used, 0.0);
+}
+
+}  // namespace
+}  // namespace hapticd::check
