@@ -23,11 +23,13 @@ void describe(V& v, Loop& s) {
              {.about = "SCHED_FIFO priority of the servo thread", .min = 1, .max = 99});
   v.optional("cpu", s.cpu,
              {.about = "pin the servo thread to this CPU; null: any", .min = 0, .max = 1023});
-  v.optional(
-      "max_gap_ticks", s.max_gap_ticks,
-      {.about = "more missed ticks in a row are a fault", .min = 0, .max = 100'000, .unit = "ticks"});
+  v.optional("max_gap_ticks", s.max_gap_ticks,
+             {.about = "more missed ticks in a row are a fault",
+              .min = 0,
+              .max = 100'000,
+              .unit = "ticks"});
   v.optional("max_missed_per_s", s.max_missed_per_s,
-             {.about = "more missed ticks in one second are a fault", .min = 0, .max = 1000});
+             {.about = "more missed ticks in one second are a fault", .min = 0, .max = 20'000});
 }
 
 template <class V>

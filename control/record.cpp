@@ -22,7 +22,8 @@ void put_samples(std::byte* slot, const RecordLayout& at,
 }
 
 std::uint8_t input_flags(const TickInput& input) noexcept {
-  return static_cast<std::uint8_t>((input.enable ? 1u : 0u) | (input.clear_fault ? 2u : 0u));
+  return static_cast<std::uint8_t>((input.enable ? 1u : 0u) | (input.clear_fault ? 2u : 0u) |
+                                   (input.unproven ? 4u : 0u));
 }
 
 double smallest(std::span<const double> values) noexcept {

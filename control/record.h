@@ -32,7 +32,7 @@ struct RecordHeader {
   Fault fault = Fault::none;
   Fault host_fault = Fault::none;  ///< as it was in the input, for replay
   Mode mode = Mode::idle;
-  std::uint8_t flags = 0;  ///< bit 0 enable, bit 1 clear_fault, as in the input
+  std::uint8_t flags = 0;  ///< of the input: 1 enable, 2 clear_fault, 4 unproven
   std::uint32_t sequence =
       0;  ///< counts records: a gap shows records lost before they reached the file
 };

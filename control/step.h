@@ -22,6 +22,7 @@ struct TickInput {
   std::uint16_t host_fault_device = kNoIndex;
   bool enable = false;       ///< forces are wanted
   bool clear_fault = false;  ///< an operator leaves the fault; ignored while its cause stands
+  bool unproven = false;     ///< forces are wanted without a proof of stability; only recorded
   std::span<const AxisSample> axes;  ///< plan.axes.size() samples
   std::span<const Aux> aux;          ///< plan.devices.size()
   std::span<const double>

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "control/core/capacity.h"
 #include "control/core/flush_denormals.h"
@@ -101,6 +102,7 @@ control::TickInput Cycle::tick_input(const control::State& state,
                           .host_fault_found = input.host_fault_found,
                           .host_fault_allowed = input.host_fault_allowed,
                           .clear_fault = input.clear_fault,
+                          .unproven = input.unproven,
                           .axes = samples_,
                           .aux = aux_,
                           .delivered = delivered_[last_]};
@@ -152,6 +154,19 @@ void Cycle::record(const build::Program& program, const control::TickInput& tick
 void Cycle::stop() noexcept {
   for (const Slot& slot : slots_) slot.device->stop();
   set_armed(false);
+}
+
+double largest_contact_force_N(const build::Program& program) noexcept {
+  double largest = 0;
+  for (const control::DevicePlan& device : program.plan().devices) {
+    double square = 0;
+    for (const double component :
+         program.state().force.subspan(device.first_coordinate, device.coordinates)) {
+      square += component * component;
+    }
+    largest = std::fmax(largest, square);
+  }
+  return std::sqrt(largest);
 }
 
 }  // namespace hapticd::daemon

@@ -26,6 +26,7 @@ struct CycleInput {
   double host_fault_allowed = 0;
   bool enable = false;
   bool clear_fault = false;
+  bool unproven = false;
 };
 
 class Cycle {
@@ -75,5 +76,8 @@ class Cycle {
   bool armed_ = false;
   bool arm_wanted_ = false;
 };
+
+/// Largest norm of the force on any one contact after the last tick [N].
+double largest_contact_force_N(const build::Program& program) noexcept;
 
 }  // namespace hapticd::daemon

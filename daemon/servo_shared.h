@@ -54,7 +54,8 @@ struct ServoShared {
   std::atomic<bool> run{true};  ///< false: ramp out, stop cycles, end of thread
   std::atomic<bool> enable{
       false};  ///< forces are wanted; the servo thread takes it back itself on a fault
-  std::atomic<bool> estop{false};  ///< zero force within one tick; stands until it is taken back
+  std::atomic<bool> unproven{false};  ///< they are wanted without a proof: for the record
+  std::atomic<bool> estop{false};     ///< zero force within one tick; stands until it is taken back
   std::atomic<std::uint32_t> clears{0};  ///< counts up: an operator leaves the fault
   std::atomic<std::uint8_t> host_fault{
       0};  ///< a Fault raised from outside the loop (SIGXCPU); taken by the servo

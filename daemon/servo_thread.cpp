@@ -51,20 +51,6 @@ void count(std::atomic<T>& counter, T by) noexcept {  // one writer: no need for
   counter.store(counter.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
 }
 
-/// Largest norm of the force on any one contact [N].
-double largest_force_N(const build::Program& program) noexcept {
-  double largest = 0;
-  for (const control::DevicePlan& device : program.plan().devices) {
-    double square = 0;
-    for (std::size_t i = 0; i < device.coordinates; ++i) {
-      const double component = program.state().force[device.first_coordinate + i];
-      square += component * component;
-    }
-    largest = std::fmax(largest, square);
-  }
-  return std::sqrt(largest);
-}
-
 }  // namespace
 
 ServoThread::ServoThread(ServoOptions options, std::vector<drivers::Device*> devices,
@@ -139,6 +125,7 @@ void ServoThread::tick(const Wake& wake, bool ending) noexcept {
 void ServoThread::take_orders(CycleInput& input) noexcept {
   const std::uint32_t clears = shared_.clears.load(std::memory_order_acquire);
   input.clear_fault = clears != std::exchange(clears_seen_, clears);
+  input.unproven = shared_.unproven.load(std::memory_order_relaxed);
   const auto raised = static_cast<Fault>(shared_.host_fault.exchange(0, std::memory_order_relaxed));
   if (raised != Fault::none) input.host_fault = raised;
   if (shared_.estop.load(std::memory_order_relaxed)) input.host_fault = Fault::estop;
@@ -173,7 +160,7 @@ void ServoThread::account(const Wake& wake) noexcept {
                                                    phases.command_ns};
   for (std::size_t phase = 0; phase < kPhases; ++phase) counters.times[phase].add(times[phase]);
 
-  const double force_N = largest_force_N(*program_);
+  const double force_N = largest_contact_force_N(*program_);
   if (force_N > counters.largest_force_N.load(std::memory_order_relaxed)) {
     counters.largest_force_N.store(force_N, std::memory_order_relaxed);
   }

@@ -34,19 +34,6 @@ Result<void> only_simulated(const config::Config& config) {
   return {};
 }
 
-/// The largest norm of the force on any one contact [N], of the last tick.
-double largest_force_N(const build::Program& program) {
-  double largest = 0;
-  for (const control::DevicePlan& device : program.plan().devices) {
-    double square = 0;
-    for (const double f :
-         program.state().force.subspan(device.first_coordinate, device.coordinates))
-      square += f * f;
-    largest = std::fmax(largest, square);
-  }
-  return std::sqrt(largest);
-}
-
 /// Devices, loop and file of one simulation.
 class Simulation {
  public:
@@ -69,11 +56,12 @@ class Simulation {
     return {};
   }
 
-  Result<void> tick(std::int64_t number, bool enable) {
+  Result<void> tick(std::int64_t number, bool enable, bool unproven) {
     virtual_now_ns = number * period_ns_;
     const CycleInput input{
         .time = {.tick = number, .start_ns = virtual_now_ns, .deadline_ns = virtual_now_ns},
-        .enable = enable};
+        .enable = enable,
+        .unproven = unproven};
     cycle_->run(program_, input, virtual_now, &ring_);
     auto written = writer_.append(ring_.front());
     ring_.pop();
@@ -112,17 +100,18 @@ Result<SimulateResult> simulate(config::Compiled& compiled, const SimulateOption
   if (!writer) return tl::unexpected(writer.error());
 
   SimulateResult result;
-  result.enabled = options.unproven || stability_gate(compiled).permits(false);
+  const bool permitted = stability_gate(compiled).permits(false);
+  result.enabled = options.unproven || permitted;
   Simulation simulation(compiled, std::move(*writer));
   if (auto connected = simulation.connect(); !connected) return tl::unexpected(connected.error());
   const std::int64_t ticks =
       std::llround(options.duration_s * 1e9 / static_cast<double>(simulation.period_ns()));
   const std::int64_t began_ns = monotonic_ns();
   while (result.ticks < ticks && !interrupt.load(std::memory_order_relaxed)) {
-    if (auto done = simulation.tick(result.ticks, result.enabled); !done)
+    if (auto done = simulation.tick(result.ticks, result.enabled, !permitted); !done)
       return tl::unexpected(done.error());
     result.largest_force_N =
-        std::fmax(result.largest_force_N, largest_force_N(simulation.program()));
+        std::fmax(result.largest_force_N, largest_contact_force_N(simulation.program()));
     ++result.ticks;
   }
   result.wall_s = static_cast<double>(monotonic_ns() - began_ns) * 1e-9;

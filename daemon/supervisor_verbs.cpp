@@ -64,6 +64,7 @@ Result<Json> Supervisor::enable(bool unproven) {
   ServoShared& shared = engine_->shared();
   if (gate_.answer == Gate::Answer::needs_unproven) {
     unproven_ = true;
+    engine_->shared().unproven.store(true);
     log_warning("enable --unproven: forces go on without a proof of stability");
   }
   cause_ = "hapticctl enable";

@@ -1,11 +1,11 @@
 #include "daemon/tick_schedule.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hapticd::daemon {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 /// Boot time and monotonic time are read one after the other; only more than this between them is a
 /// suspend.
 constexpr std::int64_t kSuspend_ns = 50'000'000;
@@ -20,7 +20,8 @@ void TickSchedule::start(ClockPair now) noexcept {
   last_monotonic_ns_ = now.monotonic_ns;
   sleep_offset_ns_ = now.boottime_ns - now.monotonic_ns;
   late_phase_ = Phase::wake;
-  gaps_.fill({});
+  missed_.fill(0);
+  newest_slice_ = now.monotonic_ns / kSlice_ns;
 }
 
 Wake TickSchedule::woke(ClockPair now) noexcept {
@@ -31,10 +32,7 @@ Wake TickSchedule::woke(ClockPair now) noexcept {
   wake.late_ns = now.monotonic_ns - wake.start_ns;
   wake.blamed = late_phase_;
   late_phase_ = Phase::wake;
-  if (wake.missed_ticks > 0) {
-    gaps_[gap_next_] = {now.monotonic_ns, wake.missed_ticks};
-    gap_next_ = (gap_next_ + 1) % kGaps;
-  }
+  if (wake.missed_ticks > 0) book_missed(now.monotonic_ns, wake.missed_ticks);
   judge(now, wake);
 
   if (wake.fault == Fault::clock_jump) {  // start anew from the clock as it now is
@@ -56,8 +54,7 @@ void TickSchedule::judge(ClockPair now, Wake& wake) const noexcept {
   };
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const std::int64_t asleep_ns = now.boottime_ns - now.monotonic_ns - sleep_offset_ns_;
-  const std::int64_t missed_per_s =
-      wake.missed_ticks > 0 ? missed_in_last_second(now.monotonic_ns) : 0;
+  const std::int64_t missed_per_s = wake.missed_ticks > 0 ? missed_in_last_second() : 0;
   if (now.monotonic_ns < last_monotonic_ns_) {
     blame(Fault::clock_jump, seconds(now.monotonic_ns - last_monotonic_ns_), 0);
   } else if (asleep_ns > kSuspend_ns) {
@@ -78,12 +75,19 @@ bool TickSchedule::finished(const std::array<std::int64_t, kPhases>& phase_ends)
   return false;
 }
 
-std::int64_t TickSchedule::missed_in_last_second(std::int64_t now_ns) const noexcept {
-  std::int64_t sum = 0;
-  for (const Gap& gap : gaps_) {
-    if (gap.missed > 0 && now_ns - gap.at_ns < kSecond_ns) sum += gap.missed;
+void TickSchedule::book_missed(std::int64_t now_ns, std::int64_t missed) noexcept {
+  const std::int64_t slice = now_ns / kSlice_ns;
+  const auto count = static_cast<std::int64_t>(kSlices);
+  if (slice - newest_slice_ >= count || slice < newest_slice_) missed_.fill(0);
+  for (std::int64_t old = newest_slice_ + 1; old <= slice && old - newest_slice_ < count; ++old) {
+    missed_[static_cast<std::size_t>(old % count)] = 0;
   }
-  return sum;
+  newest_slice_ = slice;
+  missed_[static_cast<std::size_t>(slice % count)] += missed;
+}
+
+std::int64_t TickSchedule::missed_in_last_second() const noexcept {
+  return std::accumulate(missed_.begin(), missed_.end(), std::int64_t{0});
 }
 
 }  // namespace hapticd::daemon

@@ -60,15 +60,12 @@ class TickSchedule {
 
  private:
   void judge(ClockPair now, Wake& wake) const noexcept;
-  std::int64_t missed_in_last_second(std::int64_t now_ns) const noexcept;
+  void book_missed(std::int64_t now_ns, std::int64_t missed) noexcept;
+  std::int64_t missed_in_last_second() const noexcept;
 
-  struct Gap {
-    std::int64_t at_ns = 0;
-    std::int64_t missed = 0;
-  };
-  /// Gaps that are remembered: more than the largest max_missed_per_s of a config (1000), so the
-  /// count is exact as far as it matters.
-  static constexpr std::size_t kGaps = 1024;
+  /// The last second, in hundredths: how many ticks were missed in each.
+  static constexpr std::size_t kSlices = 100;
+  static constexpr std::int64_t kSlice_ns = 10'000'000;
 
   TickScheduleOptions options_;
   std::int64_t next_ns_ = 0;
@@ -77,8 +74,8 @@ class TickSchedule {
   std::int64_t sleep_offset_ns_ =
       0;  ///< boottime - monotonic: grows only while the machine is suspended
   Phase late_phase_ = Phase::wake;
-  std::array<Gap, kGaps> gaps_{};
-  std::size_t gap_next_ = 0;
+  std::array<std::int64_t, kSlices> missed_{};
+  std::int64_t newest_slice_ = 0;
 };
 
 }  // namespace hapticd::daemon

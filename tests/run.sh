@@ -89,7 +89,7 @@ suite_rtsan() {
     install_packages "${packages_rtsan[@]}" || true
   fi
   command -v clang++-22 > /dev/null || { skip "--rtsan: clang 22 cannot be had from this machine's archive"; return; }
-  tests/lint/rtsan_can_fail.sh clang++-22
+  bash tests/lint/rtsan_can_fail.sh clang++-22
   build_in build/rtsan clang++-22 test_closed_loop "${sanitized[@]}" -DHAPTICD_SANITIZE=realtime
   run_ctest --test-dir build/rtsan -L rtsan
 }

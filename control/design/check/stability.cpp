@@ -1,6 +1,7 @@
 #include "control/design/check/stability.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -62,6 +63,16 @@ std::string text(const char* format, double a, double b, double c) {
   return buffer;
 }
 
+/// What is left, for people: how much stiffer the scene may get, how many ticks in a row may be missed.
+std::string margin(const PassiveAnswer& answer, double period_s) {
+  if (!(answer.damping_used > 0)) return {};
+  const double missed = std::max(0.0, std::ceil(answer.longest_hold_s / period_s) - 2);
+  return text(
+      "; holds up to %.3g times this stiffness, and while a force is held less than %.3g ms, "
+      "so with %.0f missed ticks in a row",
+      answer.stiffness_factor, 1e3 * answer.longest_hold_s, missed);
+}
+
 std::string missing_premise(const control::DevicePlan& device, const DeviceAssumption& assumed) {
   if (assumed.min_damping.size() != device.axes)
     return "no `model` with a damping for every axis: nothing can be proved";
@@ -88,12 +99,14 @@ PassiveAnswer answer(const control::Plan& plan, const control::DevicePlan& devic
   result.longest_hold_s = result.damping_used > 0 ? plan.period_s / result.damping_used
                                                   : std::numeric_limits<double>::infinity();
   result.proved = result.damping_used < 1 - kMargin;
-  result.why = text(result.proved ? "K T/2 + B < device damping holds: uses %.1f %% of the damping "
-                                    "(K T/2 alone %.1f %%, B alone %.1f %%)"
-                                  : "K T/2 + B < device damping fails: needs %.1f %% of the "
-                                    "damping (K T/2 alone %.1f %%, B alone %.1f %%)",
-                    100 * result.damping_used, 100 * share(needs.spring, damping),
-                    100 * share(needs.damper, damping));
+  result.why =
+      text(result.proved ? "K T/2 + B < device damping holds: uses %.1f %% of the damping "
+                           "(K T/2 alone %.1f %%, B alone %.1f %%)"
+                         : "K T/2 + B < device damping fails: needs %.1f %% of the damping "
+                           "(K T/2 alone %.1f %%, B alone %.1f %%)",
+           100 * result.damping_used, 100 * share(needs.spring, damping),
+           100 * share(needs.damper, damping));
+  result.why += margin(result, plan.period_s);
   return result;
 }
 

@@ -57,7 +57,7 @@ TEST(Reader, MissingKeyIsNamedAtItsMap) {
 }
 
 TEST(Reader, WrongTypeIsRefused) {
-  expect_rate_error("fast", {"expected a number from 10 to 20000 Hz", "found 'fast'"});
+  expect_rate_error("fast", {"expected a number from 100 to 8000 Hz", "found 'fast'"});
   expect_rate_error("[1000]", {"expected a number", "a list of 1"});
   expect_rate_error("{}", {"expected a number", "an empty map"});
   expect_rate_error("true", {"expected a number", "'true'"});
@@ -115,8 +115,8 @@ TEST(Reader, DecimalNotationsAreTaken) {
 }
 
 TEST(Reader, OutOfRangeNamesTheRange) {
-  expect_rate_error("0", {"from 10 to 20000 Hz", "'0'"});
-  expect_rate_error("20000.001", {"from 10 to 20000 Hz"});
+  expect_rate_error("0", {"from 100 to 8000 Hz", "'0'"});
+  expect_rate_error("8000.001", {"from 100 to 8000 Hz"});
   expect_bits_error("53", {"from 0 to 52"});
   expect_bits_error("-1", {"from 0 to 52"});
   expect_bits_error("99999999999999999999", {"too large"});

@@ -31,6 +31,7 @@ TEST(Record, HoldsWhatTheTickSawAndSaid) {
   test::Rig rig(spec);
   rig.enable_at(-0.002);
   rig.samples[1].age_ns = 77;
+  rig.input.unproven = true;
   rig.samples[0].freshness = rig.samples[1].freshness = Freshness::fresh;
   const TickOutput output = control::step(rig.program.plan(), rig.program.state(), rig.input);
   const RecordLayout& at = rig.program.plan().record;
@@ -44,7 +45,7 @@ TEST(Record, HoldsWhatTheTickSawAndSaid) {
   EXPECT_EQ(header.phases.step_ns, 9);
   EXPECT_EQ(header.sequence, 42u);
   EXPECT_EQ(header.mode, Mode::enabled);
-  EXPECT_EQ(header.flags, 1);
+  EXPECT_EQ(header.flags, 1 | 4);
   EXPECT_EQ(header.ramp, 1.0);
   EXPECT_EQ(read<double>(record, at.raw.offset), test::Rig::raw(-0.002));
   EXPECT_EQ(read<std::int64_t>(record, at.age_ns.offset + 8), 77);

@@ -88,9 +88,9 @@ TEST(TickSchedule, MissedTicksAreForgottenAfterASecond) {
   }
 }
 
-TEST(TickSchedule, HighestMissedRateOfAConfigIsCountedExactly) {
-  Script script({.period_ns = 125'000, .max_gap_ticks = 5, .max_missed_per_s = 1000});
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(script.wake(125'000).fault, Fault::none) << i;
+TEST(TickSchedule, EveryGapOfASecondCountsHoweverManyThereAre) {
+  Script script({.period_ns = 125'000, .max_gap_ticks = 5, .max_missed_per_s = 3500});
+  for (int i = 0; i < 3500; ++i) ASSERT_EQ(script.wake(125'000).fault, Fault::none) << i;
   EXPECT_EQ(script.wake(125'000).fault, Fault::missed_rate);
 }
 
