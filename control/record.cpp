@@ -7,17 +7,20 @@
 namespace hapticd::control {
 namespace {
 
-void put_samples(std::byte* slot, const RecordLayout& at,
-                 std::span<const AxisSample> samples) noexcept {
-  std::byte* raw = slot + at.raw.offset;
-  std::byte* age = slot + at.age_ns.offset;
-  std::byte* freshness = slot + at.freshness.offset;
-  for (const AxisSample& sample : samples) {
-    std::memcpy(raw, &sample.raw, 8);
-    std::memcpy(age, &sample.age_ns, 8);
-    *freshness++ = static_cast<std::byte>(sample.freshness);
-    raw += 8;
-    age += 8;
+/// Loops with copies of constant size: at a few axes they cost less than a call of memcpy each.
+void put_axes(std::byte* slot, const RecordLayout& at, const TickInput& input) noexcept {
+  for (std::size_t i = 0; i < input.axes.size(); ++i) {
+    const AxisSample& sample = input.axes[i];
+    std::memcpy(slot + at.raw.offset + 8 * i, &sample.raw, 8);
+    std::memcpy(slot + at.age_ns.offset + 8 * i, &sample.age_ns, 8);
+    std::memcpy(slot + at.delivered.offset + 8 * i, &input.delivered[i], 8);
+    slot[at.freshness.offset + i] = static_cast<std::byte>(sample.freshness);
+  }
+}
+
+void put_aux(std::byte* slot, const RecordLayout& at, std::span<const Aux> aux) noexcept {
+  for (std::size_t i = 0; i < aux.size(); ++i) {
+    std::memcpy(slot + at.aux.offset + sizeof(Aux) * i, &aux[i], sizeof(Aux));
   }
 }
 
@@ -75,10 +78,9 @@ void write_record(const Plan& plan, const State& state, const TickInput& input,
                                  .sequence = sequence});
   const RecordLayout& at = plan.record;
   std::memset(slot + at.bytes - 8, 0, 8);  // the padding behind the last array
-  put_samples(slot, at, input.axes);
-  std::memcpy(slot + at.delivered.offset, input.delivered.data(), input.delivered.size_bytes());
+  put_axes(slot, at, input);
+  put_aux(slot, at, input.aux);
   std::memcpy(slot + at.q.offset, state.recorded.data(), state.recorded.size_bytes());
-  std::memcpy(slot + at.aux.offset, input.aux.data(), input.aux.size_bytes());
 }
 
 }  // namespace hapticd::control

@@ -1,5 +1,6 @@
 // hapticctl: the tool for people.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -97,6 +98,7 @@ void describe(CommandLine& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is told as an error, with what was saved
   try {
     CommandLine line;
     describe(line);

@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 usage() {
   cat << 'END'
 usage: tests/run.sh [--clang] [--asan] [--tsan] [--rtsan] [--long] [--bench] [--vm] [--fuzz]
-  --clang   build with clang 14, warnings are errors; unit tests
+  --clang   build with clang 14, benchmarks too, warnings are errors; unit tests
   --asan    AddressSanitizer and UndefinedBehaviorSanitizer, all tests but lint and service
   --tsan    ThreadSanitizer, the tests of threads and what they share
   --rtsan   RealtimeSanitizer (clang 22), the tests of the loop
@@ -69,8 +69,8 @@ suite_default() {
   run_ctest --test-dir build -LE long
 }
 suite_clang() {
-  install_packages "${packages_clang[@]}"
-  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Release -DHAPTICD_WERROR=ON
+  install_packages "${packages_clang[@]}" "${packages_bench[@]}"
+  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Release -DHAPTICD_WERROR=ON -DHAPTICD_BUILD_BENCH=ON
   run_ctest --test-dir build/clang -LE 'long|process|lint|service'
 }
 suite_asan() {

@@ -98,6 +98,18 @@ TEST_F(Starved, TheKernelsCpuTimeWarningIsAFault) {
   EXPECT_EQ(stop(), 0);
 }
 
+TEST_F(Starved, ALoopThatNeverSleepsMeetsTheKernelsCpuTimeLimit) {
+  start({.failures = "{kind: slow, at_s: 0.5, for_s: 1}"}, {},
+        {"prlimit", "--rttime=100000:30000000"});
+  ASSERT_TRUE(reaches("enabled")) << hapticd_->err();
+  if (status()["summary"]["scheduling"] == "SCHED_OTHER") {
+    GTEST_SKIP() << "the limit holds only for a thread that got SCHED_FIFO";
+  }
+  ASSERT_TRUE(reaches("fault"));
+  EXPECT_EQ(status()["fault"]["name"], "cpu_time");
+  EXPECT_EQ(stop(), 0);
+}
+
 using FullDisk = DaemonTest;
 
 /// A file size limit makes write() fail as a full disk does, with EFBIG for ENOSPC, and needs no

@@ -212,8 +212,9 @@ TEST(Reader, ErrorReadsAsOneLineForPeople) {
 }
 
 TEST(Reader, LongOrBinaryTextIsShownShort) {
-  const auto errors = errors_of(
-      replaced(kSmall, "rate_Hz: 1000", "rate_Hz: \"" + std::string(5000, 'x') + "\\n\""));
+  std::string value(5000, 'x');
+  value.insert(0, "rate_Hz: \"").append("\\n\"");
+  const auto errors = errors_of(replaced(kSmall, "rate_Hz: 1000", value));
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_LT(errors[0].message.size(), 150U);
 }
