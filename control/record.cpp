@@ -72,7 +72,7 @@ void write_record(const Plan& plan, const State& state, const TickInput& input,
                                  .fault_axis = output.fault.axis,
                                  .fault_device = output.fault.device,
                                  .fault = output.fault.code,
-                                 .host_fault = input.host_fault,
+                                 .host_fault = input.host_fault.code,
                                  .mode = output.mode,
                                  .flags = input_flags(input),
                                  .sequence = sequence});

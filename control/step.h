@@ -15,11 +15,7 @@ namespace hapticd::control {
 struct TickInput {
   std::int64_t tick = 0;          ///< number of the period since the loop started
   std::int64_t missed_ticks = 0;  ///< periods skipped just before this one
-  Fault host_fault =
-      Fault::none;  ///< what the caller saw (e-stop, overrun, ...); none in a healthy tick
-  double host_fault_found = 0;  ///< its figures, for the report
-  double host_fault_allowed = 0;
-  std::uint16_t host_fault_device = kNoIndex;
+  FaultReport host_fault{};  ///< seen by the caller (e-stop, overrun, ...); none in a healthy tick
   bool enable = false;       ///< forces are wanted
   bool clear_fault = false;  ///< an operator leaves the fault; ignored while its cause stands
   bool unproven = false;     ///< forces are wanted without a proof of stability; only recorded

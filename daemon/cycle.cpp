@@ -22,6 +22,8 @@ std::int32_t between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
 Cycle::Cycle(std::vector<drivers::Device*> devices, const control::Plan& plan)
     : samples_(plan.axes.size()), aux_(plan.devices.size()) {
   for (auto& delivered : delivered_) delivered.assign(plan.axes.size(), 0.0);
+  tick_.axes = samples_;
+  tick_.aux = aux_;
   for (std::size_t i = 0; i < devices.size(); ++i) {
     slots_.push_back({devices[i], plan.devices[i].first_axis, plan.devices[i].axes, false});
   }
@@ -35,8 +37,8 @@ void Cycle::run(build::Program& program, const CycleInput& input, Now now,
   collect_all(input.time, now);
   const std::int64_t collected_ns = now();
 
-  const control::TickInput tick = tick_input(program.state(), input);
-  output_ = control::step(program.plan(), program.state(), tick);
+  fill_tick(program.state().mode, input);
+  output_ = control::step(program.plan(), program.state(), tick_);
   const std::int64_t stepped_ns = now();
 
   command_all();
@@ -47,7 +49,7 @@ void Cycle::run(build::Program& program, const CycleInput& input, Now now,
              .collect_ns = between(woke_ns, collected_ns),
              .step_ns = between(collected_ns, stepped_ns),
              .command_ns = between(stepped_ns, now())};
-  record(program, tick, input.time.start_ns, ring);
+  if (ring != nullptr) record(program, input.time.start_ns, *ring);
   last_ = 1 - last_;
 }
 
@@ -94,30 +96,24 @@ bool Cycle::wait_for_buses(std::int64_t timeout_ns) noexcept {
 }
 
 /// Adds what the devices said of themselves. Forces are enabled only once all power stages are on.
-control::TickInput Cycle::tick_input(const control::State& state,
-                                     const CycleInput& input) noexcept {
-  control::TickInput tick{.tick = input.time.tick,
-                          .missed_ticks = input.missed_ticks,
-                          .host_fault = input.host_fault,
-                          .host_fault_found = input.host_fault_found,
-                          .host_fault_allowed = input.host_fault_allowed,
-                          .clear_fault = input.clear_fault,
-                          .unproven = input.unproven,
-                          .axes = samples_,
-                          .aux = aux_,
-                          .delivered = delivered_[last_]};
+void Cycle::fill_tick(control::Mode mode, const CycleInput& input) noexcept {
+  tick_.tick = input.time.tick;
+  tick_.missed_ticks = input.missed_ticks;
+  tick_.host_fault = input.host_fault;
+  tick_.clear_fault = input.clear_fault;
+  tick_.unproven = input.unproven;
+  tick_.delivered = delivered_[last_];
   armed_ = true;
-  for (std::size_t i = 0; i < aux_.size(); ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
     armed_ = armed_ && aux_[i].armed;
-    if (tick.host_fault != Fault::none) continue;
-    const bool dropped_out = state.mode == control::Mode::enabled && !aux_[i].armed;
+    if (tick_.host_fault.code != Fault::none) continue;
+    const bool dropped_out = mode == control::Mode::enabled && !aux_[i].armed;
     if (!aux_[i].faulted && !dropped_out) continue;
-    tick.host_fault = aux_[i].faulted ? Fault::device : Fault::disarmed;
-    tick.host_fault_device = static_cast<std::uint16_t>(i);
+    tick_.host_fault = {.code = aux_[i].faulted ? Fault::device : Fault::disarmed,
+                        .device = static_cast<std::uint16_t>(i)};
   }
-  if (input.enable && state.mode != control::Mode::fault) set_armed(true);
-  tick.enable = input.enable && armed_;
-  return tick;
+  if (input.enable && mode != control::Mode::fault) set_armed(true);
+  tick_.enable = input.enable && armed_;
 }
 
 void Cycle::command_all() noexcept {
@@ -139,14 +135,13 @@ void Cycle::set_armed(bool armed) noexcept {
   for (const Slot& slot : slots_) slot.device->set_armed(armed);
 }
 
-void Cycle::record(const build::Program& program, const control::TickInput& tick,
-                   std::int64_t start_ns, rt::SpscRing* ring) noexcept {
-  if (ring == nullptr) return;
-  std::byte* slot = ring->reserve();
+void Cycle::record(const build::Program& program, std::int64_t start_ns,
+                   rt::SpscRing& ring) noexcept {
+  std::byte* slot = ring.reserve();
   if (slot != nullptr) {
-    control::write_record(program.plan(), program.state(), tick, output_, start_ns, phases_,
+    control::write_record(program.plan(), program.state(), tick_, output_, start_ns, phases_,
                           sequence_, slot);
-    ring->commit();
+    ring.commit();
   }
   ++sequence_;  // counts lost records too, so that a gap shows them
 }

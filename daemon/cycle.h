@@ -21,9 +21,7 @@ using Now = std::int64_t (*)() noexcept;
 struct CycleInput {
   drivers::TickTime time;
   std::int64_t missed_ticks = 0;
-  Fault host_fault = Fault::none;
-  double host_fault_found = 0;
-  double host_fault_allowed = 0;
+  FaultReport host_fault{};
   bool enable = false;
   bool clear_fault = false;
   bool unproven = false;
@@ -33,6 +31,8 @@ class Cycle {
  public:
   /// Devices in plan order. A plan that is swapped in later has the same devices and axes.
   Cycle(std::vector<drivers::Device*> devices, const control::Plan& plan);
+  Cycle(const Cycle&) = delete;
+  Cycle& operator=(const Cycle&) = delete;
 
   /// Runs one tick. `ring` may be nullptr: no record. Afterwards the getters tell about it.
   void run(build::Program& program, const CycleInput& input, Now now,
@@ -58,11 +58,10 @@ class Cycle {
   void collect_all(const drivers::TickTime& time, Now now) noexcept;
   bool collect_waiting() noexcept;
   bool wait_for_buses(std::int64_t timeout_ns) noexcept;
-  control::TickInput tick_input(const control::State& state, const CycleInput& input) noexcept;
+  void fill_tick(control::Mode mode, const CycleInput& input) noexcept;
   void command_all() noexcept;
   void set_armed(bool armed) noexcept;
-  void record(const build::Program& program, const control::TickInput& tick, std::int64_t start_ns,
-              rt::SpscRing* ring) noexcept;
+  void record(const build::Program& program, std::int64_t start_ns, rt::SpscRing& ring) noexcept;
 
   std::vector<Slot> slots_;
   std::vector<AxisSample> samples_;
@@ -70,6 +69,7 @@ class Cycle {
   std::array<std::vector<double>, 2>
       delivered_;  // of the last tick (step reads it) and of this one
   std::size_t last_ = 0;
+  control::TickInput tick_;
   control::TickOutput output_;
   control::PhaseTimes phases_;
   std::uint32_t sequence_ = 0;

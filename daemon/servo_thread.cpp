@@ -111,8 +111,6 @@ void ServoThread::tick(const Wake& wake, bool ending) noexcept {
                             .deadline_ns = wake.start_ns + options_.schedule.period_ns / 2},
                    .missed_ticks = wake.missed_ticks,
                    .host_fault = wake.fault,
-                   .host_fault_found = wake.fault_found,
-                   .host_fault_allowed = wake.fault_allowed,
                    .enable = !ending && shared_.enable.load(std::memory_order_relaxed)};
   take_orders(input);
   cycle_.run(*program_, input, monotonic_ns, &shared_.records);
@@ -127,8 +125,8 @@ void ServoThread::take_orders(CycleInput& input) noexcept {
   input.clear_fault = clears != std::exchange(clears_seen_, clears);
   input.unproven = shared_.unproven.load(std::memory_order_relaxed);
   const auto raised = static_cast<Fault>(shared_.host_fault.exchange(0, std::memory_order_relaxed));
-  if (raised != Fault::none) input.host_fault = raised;
-  if (shared_.estop.load(std::memory_order_relaxed)) input.host_fault = Fault::estop;
+  if (raised != Fault::none) input.host_fault = {.code = raised};
+  if (shared_.estop.load(std::memory_order_relaxed)) input.host_fault = {.code = Fault::estop};
 }
 
 void ServoThread::adopt_plan() noexcept {

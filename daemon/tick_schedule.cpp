@@ -35,7 +35,7 @@ Wake TickSchedule::woke(ClockPair now) noexcept {
   if (wake.missed_ticks > 0) book_missed(now.monotonic_ns, wake.missed_ticks);
   judge(now, wake);
 
-  if (wake.fault == Fault::clock_jump) {  // start anew from the clock as it now is
+  if (wake.fault.code == Fault::clock_jump) {  // start anew from the clock as it now is
     wake.start_ns = now.monotonic_ns;
     wake.late_ns = 0;
   }
@@ -48,9 +48,7 @@ Wake TickSchedule::woke(ClockPair now) noexcept {
 
 void TickSchedule::judge(ClockPair now, Wake& wake) const noexcept {
   const auto blame = [&wake](Fault fault, double found, double allowed) {
-    wake.fault = fault;
-    wake.fault_found = found;
-    wake.fault_allowed = allowed;
+    wake.fault = {.code = fault, .found = found, .allowed = allowed};
   };
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   const std::int64_t asleep_ns = now.boottime_ns - now.monotonic_ns - sleep_offset_ns_;

@@ -39,9 +39,7 @@ struct Wake {
   std::int64_t missed_ticks = 0;
   Phase blamed =
       Phase::wake;  ///< for missed ticks: the phase that was still running when the period ended
-  Fault fault = Fault::none;
-  double fault_found = 0;
-  double fault_allowed = 0;
+  FaultReport fault{};
 };
 
 class TickSchedule {

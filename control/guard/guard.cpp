@@ -97,18 +97,15 @@ void store(const Force& force, const DevicePlan& device, std::span<double> coord
 }  // namespace
 
 void decide_mode(State& state, const TickInput& input, const Findings& findings) noexcept {
-  const bool host_ok = input.host_fault == Fault::none;
+  const bool host_ok = input.host_fault.code == Fault::none;
   const bool healthy = host_ok && findings.fault.code == Fault::none;
   if (state.mode == Mode::fault && input.clear_fault && healthy) {
     state.mode = Mode::idle;
     state.fault = {};
   }
   const bool forces = state.mode == Mode::enabled || input.enable;
-  if (!host_ok && (forces || kept_while_idle(input.host_fault))) {
-    fail(state, {.code = input.host_fault,
-                 .device = input.host_fault_device,
-                 .found = input.host_fault_found,
-                 .allowed = input.host_fault_allowed});
+  if (!host_ok && (forces || kept_while_idle(input.host_fault.code))) {
+    fail(state, input.host_fault);
   } else if (findings.fault.code != Fault::none && forces) {
     fail(state, findings.fault);
   } else if (state.mode == Mode::idle && input.enable && findings.ready) {
@@ -134,9 +131,11 @@ void guard(const Plan& plan, State& state, Findings& findings, bool enable) noex
 }
 
 void limit_effort(const Plan& plan, State& state, Findings& findings) noexcept {
-  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-    double& effort = state.effort[i];
-    const double limit = plan.axes[i].max_effort;
+  const std::span<const AxisPlan> axes = plan.axes;
+  const std::span<double> efforts = state.effort;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    double& effort = efforts[i];
+    const double limit = axes[i].max_effort;
     if (std::abs(effort) <= limit) continue;
     if (!std::isfinite(effort)) {
       findings.report({.code = Fault::output_not_finite,

@@ -149,9 +149,12 @@ void watch_stuck(const Plan& plan, State& state, const TickInput& input,
 
 void sense(const Plan& plan, State& state, const TickInput& input, Findings& findings) noexcept {
   const bool gap = input.missed_ticks != 0;
-  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-    const bool done = !gap && sense_usual(plan.axes[i], plan.rate_Hz, input.axes[i], state.axes[i],
-                                          state.q[i], state.qd[i]);
+  const std::span<const AxisPlan> plans = plan.axes;
+  const std::span<const AxisSample> samples = input.axes;
+  const std::span<AxisState> axes = state.axes;
+  const std::span<double> q = state.q, qd = state.qd;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const bool done = !gap && sense_usual(plans[i], plan.rate_Hz, samples[i], axes[i], q[i], qd[i]);
     if (!done) sense_unusual(plan, state, input, i, findings);
   }
   watch_stuck(plan, state, input, findings);

@@ -58,7 +58,7 @@ void random_tick(Rig& rig) {
   rig.input.missed_ticks = *rc::gen::weightedElement<std::int64_t>({{10, 0}, {1, 1}, {1, 1000000}});
   rig.input.enable = *rc::gen::weightedElement<bool>({{9, true}, {1, false}});
   rig.input.clear_fault = *rc::gen::arbitrary<bool>();
-  rig.input.host_fault =
+  rig.input.host_fault.code =
       *rc::gen::weightedElement<Fault>({{20, Fault::none}, {1, Fault::estop}, {1, Fault::overrun}});
 }
 
@@ -80,7 +80,7 @@ RC_GTEST_PROP(Step, AnyInputGivesAFiniteOutputInsideEveryLimit, ()) {
     RC_ASSERT(std::sqrt(square) <= rig.program.plan().devices[0].max_force * (1 + 1e-12));
     if (output.mode == Mode::enabled)
       RC_ASSERT(std::sqrt(change) <= rig.program.plan().devices[0].max_slew * (1 + 1e-9));
-    if (rig.input.host_fault != Fault::none && rig.input.enable)
+    if (rig.input.host_fault.code != Fault::none && rig.input.enable)
       RC_ASSERT(output.mode == Mode::fault);
   }
 }

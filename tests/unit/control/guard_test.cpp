@@ -162,31 +162,31 @@ TEST(Guard, StuckEncoderUnderForceIsAFaultOnlyWhereWatched) {
 TEST(Guard, EmergencyStopCutsAtOnceInAnyMode) {
   Rig rig(wall_spec(1000));
   rig.at(0);
-  rig.input.host_fault = Fault::estop;
+  rig.input.host_fault = {.code = Fault::estop};
   EXPECT_EQ(rig.at(0).mode, Mode::fault) << "kept while idle too";
-  rig.input.host_fault = Fault::none;
+  rig.input.host_fault = {.code = Fault::none};
   rig.input.clear_fault = true;
   EXPECT_EQ(rig.at(0).mode, Mode::idle);
   rig.enable_at(-0.005);
-  rig.input.host_fault = Fault::estop;
+  rig.input.host_fault = {.code = Fault::estop};
   EXPECT_EQ(rig.at(-0.005).effort[0], 0.0);
 }
 
 TEST(Guard, LateLoopWhileIdleIsNoFault) {
   Rig rig(wall_spec(1000));
   rig.at(0);
-  rig.input.host_fault = Fault::overrun;
+  rig.input.host_fault = {.code = Fault::overrun};
   EXPECT_EQ(rig.at(0).mode, Mode::idle);
 }
 
 TEST(Guard, FaultStaysUntilItIsClearedAndItsCauseIsGone) {
   Rig rig(wall_spec(1000));
   rig.enable_at(-0.005);
-  rig.input.host_fault = Fault::overrun;
+  rig.input.host_fault = {.code = Fault::overrun};
   rig.at(-0.005);
   rig.input.clear_fault = true;
   EXPECT_EQ(rig.at(-0.005).mode, Mode::fault) << "the cause stands";
-  rig.input.host_fault = Fault::none;
+  rig.input.host_fault = {.code = Fault::none};
   for (int i = 0; i < 5; ++i) EXPECT_EQ(rig.at(-0.005).mode, Mode::fault) << "nobody cleared it";
   rig.input.clear_fault = true;
   const TickOutput output = rig.at(-0.005);

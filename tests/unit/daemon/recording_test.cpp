@@ -45,7 +45,7 @@ TEST_F(RecordingTest, FieldsAreWhereTheLoopWritesThem) {
   input.axes = samples;
   input.aux = aux;
   input.delivered = delivered;
-  input.host_fault = Fault::overrun;
+  input.host_fault = {.code = Fault::overrun};
   control::TickOutput output;
   output.mode = control::Mode::enabled;
   Recording recording{.header = header(), .data = {}};

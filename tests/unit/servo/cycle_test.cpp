@@ -93,7 +93,7 @@ TEST(Cycle, DeviceThatGivesUpIsAFaultEvenWhileIdle) {
 TEST(Cycle, FaultStopsTheDeviceEveryTick) {
   Loop loop;
   loop.enable();
-  loop.input.host_fault = Fault::estop;
+  loop.input.host_fault = {.code = Fault::estop};
   for (int i = 0; i < 3; ++i) loop.tick();
   EXPECT_EQ(loop.device.stops, 3);
   EXPECT_FALSE(loop.device.armed);
@@ -103,9 +103,9 @@ TEST(Cycle, FaultStopsTheDeviceEveryTick) {
 TEST(Cycle, FaultIsLeftByAnOperatorAndTheForceFadesInAnew) {
   Loop loop;
   loop.enable();
-  loop.input.host_fault = Fault::overrun;
+  loop.input.host_fault = {.code = Fault::overrun};
   loop.tick();
-  loop.input.host_fault = Fault::none;
+  loop.input.host_fault = {.code = Fault::none};
   for (int i = 0; i < 20; ++i) EXPECT_EQ(loop.tick().mode, Mode::fault);
   loop.input.clear_fault = true;
   double last = 0;
