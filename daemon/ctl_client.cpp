@@ -57,10 +57,12 @@ Result<CtlClient> CtlClient::connect(const std::string& socket_path) {
 Result<Json> CtlClient::ask(const Request& request) {
   const std::string message = format_request(request);
   std::vector<char> buffer(kMaxMessageBytes);
-  // A daemon that refuses this user says so and closes at once: its words may be there although
-  // sending fails.
+  // A daemon that refuses this user says so and closes at once. Its words are there although sending
+  // fails, or although the kernel first tells, once, that our request was thrown away.
   const bool sent = ::send(fd_.get(), message.data(), message.size(), MSG_NOSIGNAL) >= 0;
-  const ssize_t got = ::recv(fd_.get(), buffer.data(), buffer.size(), 0);
+  const auto receive = [&] { return ::recv(fd_.get(), buffer.data(), buffer.size(), 0); };
+  ssize_t got = receive();
+  if (got < 0 && errno == ECONNRESET) got = receive();
   if (got <= 0) {
     return fail(ExitCode::unavailable,
                 fmt::format("hapticd at {} did not answer ({})", path_,
