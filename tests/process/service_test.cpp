@@ -149,10 +149,12 @@ TEST_F(Unprivileged, RunsOnWithOneWarningThatNamesEachRightAndHowToGrantIt) {
   EXPECT_EQ(hapticd_->wait(), 0) << hapticd_->err();
   const std::string log = hapticd_->err();
   EXPECT_EQ(count(log, "warning: real-time rights are missing"), 1u) << log;
-  for (const char* part :
-       {"SCHED_FIFO priority 80", "LimitRTPRIO", "mlockall", "LimitMEMLOCK", "grant it by"}) {
+  for (const char* part : {"SCHED_FIFO priority 80", "LimitRTPRIO", "grant it by"}) {
     EXPECT_THAT(log, HasSubstr(part));
   }
+#ifndef HAPTICD_SANITIZED  // AddressSanitizer makes mlockall a call that always succeeds
+  for (const char* part : {"mlockall", "LimitMEMLOCK"}) EXPECT_THAT(log, HasSubstr(part));
+#endif
   EXPECT_THAT(log, HasSubstr("ready -> enabled"));
   EXPECT_THAT(hapticd_->out(), HasSubstr("SCHED_OTHER"));
 }
