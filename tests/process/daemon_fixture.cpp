@@ -93,6 +93,10 @@ bool DaemonTest::passes_tick(int tick) {
   });
 }
 
+bool DaemonTest::stays_enabled(int ticks) {
+  return passes_tick(status()["tick"].get<int>() + ticks) && status()["state"] == "enabled";
+}
+
 bool DaemonTest::logs(const std::string& text) {
   return eventually([&] { return hapticd_->err().find(text) != std::string::npos; });
 }

@@ -49,6 +49,8 @@ class DaemonTest : public testing::Test {
   /// The hand feels the wall.
   bool presses();
   bool passes_tick(int tick);
+  /// So many ticks go by and forces are still on.
+  bool stays_enabled(int ticks);
   /// The daemon's log holds this, now or soon.
   bool logs(const std::string& text);
   bool output_has(const std::string& text);
