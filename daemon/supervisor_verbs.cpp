@@ -62,11 +62,10 @@ Result<Json> Supervisor::enable(bool unproven) {
     return fail(ExitCode::no, "enable refused: " + gate_.explanation());
   }
   ServoShared& shared = engine_->shared();
-  if (gate_.answer == Gate::Answer::needs_unproven) {
-    unproven_ = true;
-    engine_->shared().unproven.store(true);
-    log_warning("enable --unproven: forces go on without a proof of stability");
-  }
+  // Consent is to this config: a later enable on a proved one neither needs nor records it.
+  unproven_ = gate_.answer == Gate::Answer::needs_unproven;
+  shared.unproven.store(unproven_);
+  if (unproven_) log_warning("enable --unproven: forces go on without a proof of stability");
   cause_ = "hapticctl enable";
   shared.estop.store(false);
   Json json = reply(Verb::enable);
