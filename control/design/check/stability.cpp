@@ -66,6 +66,9 @@ std::string text(const char* format, double a, double b, double c) {
 /// What is left, for people: how much stiffer the scene may get, how many ticks in a row may be missed.
 std::string margin(const PassiveAnswer& answer, double period_s) {
   if (!(answer.damping_used > 0)) return {};
+  if (!answer.proved) {
+    return text("; it would hold up to %.3g times this stiffness", answer.stiffness_factor, 0, 0);
+  }
   const double missed = std::max(0.0, std::ceil(answer.longest_hold_s / period_s) - 2);
   return text(
       "; holds up to %.3g times this stiffness, and while a force is held less than %.3g ms, "

@@ -67,6 +67,14 @@ TEST(Passive, ObliquePlaneWeighsTheDampingOfEachAxis) {
               1e-12);
 }
 
+TEST(Passive, ToleratedHoldIsToldOnlyWithAProof) {
+  const auto three = answer(walls(1, {test::wall(1000, 0)}), {1.6});  // held up to 3.2 periods
+  EXPECT_NE(three.why.find("2 missed ticks"), std::string::npos) << three.why;
+  const auto no = answer(walls(1, {test::wall(1000, 0)}), {0.4});
+  EXPECT_EQ(no.why.find("missed"), std::string::npos) << no.why;
+  EXPECT_NE(no.why.find("0.8 times"), std::string::npos) << no.why;
+}
+
 TEST(Passive, EmptySceneNeedsNothing) {
   const auto yes = answer(walls(1, {}), {1e-6});
   EXPECT_TRUE(yes.proved);
