@@ -9,6 +9,15 @@
 #include <span>
 
 #include "control/core/capacity.h"
+#include "control/guard/bound.h"
+#include "control/guard/limits.h"
+#include "control/guard/passivity_controller.h"
+#include "control/kinematics/kinematics.h"
+#include "control/motion/estimators.h"
+#include "control/motion/homing.h"
+#include "control/observer/compensation.h"
+#include "control/observer/observer.h"
+#include "control/record_layout.h"
 #include "control/scene/plane.h"
 
 namespace hapticd::control {
@@ -21,6 +30,10 @@ struct AxisPlan {
   double max_effort = 0;    ///< N or N m, > 0: what the actuator can deliver
   double max_velocity = 0;  ///< m/s or rad/s, > 0: beyond it a fault
   double max_step = 0;      ///< m or rad in one tick, >= max_velocity * period: beyond it a jump
+  double min_damping =
+      0;  ///< N s/m or N m s/rad, >= 0: what the device surely dissipates by itself
+  double delay_share = 0;  ///< t / T in [0, 1): the fraction of a tick in the device's latency
+  std::uint16_t delay_ticks = 0;  ///< n: the whole ticks in it, at most kMaxDelayTicks
 };
 
 /// An axis whose encoder is watched for being stuck (only axes that ask for it are here).
@@ -30,38 +43,17 @@ struct StuckWatch {
   double min_effort = 0;    ///< N or N m: below it nobody expects motion
 };
 
-/// An axis that is a coordinate of its contact (Cartesian devices).
-struct CartesianAxis {
-  std::uint16_t axis = 0;
-  std::uint16_t coordinate = 0;
-};
-
 /// One device: a run of axes and the contact that they move.
 struct DevicePlan {
   std::uint16_t first_axis = 0;
   std::uint16_t axes = 0;
   std::uint16_t first_coordinate = 0;
   std::uint16_t coordinates = 0;
-  double max_force = 0;      ///< N, > 0: norm of the contact force
+  double max_force = 0;      ///< N in the scene's scale, > 0: norm of the contact force
   double max_slew = 0;       ///< N per tick: norm of the change of the contact force
   double ramp_per_tick = 1;  ///< share of the force that one tick of the ramp adds or takes
-  std::uint32_t max_stale_ticks = 0;
-};
-
-/// One array of a record: `count` values of `bytes` bytes each from `offset` on.
-struct RecordArray {
-  std::uint32_t offset = 0;
-  std::uint32_t count = 0;
-};
-
-/// Where each array stands in a record; the header comes first (control/record.h).
-struct RecordLayout {
-  RecordArray raw, age_ns, delivered;  ///< per axis
-  RecordArray q, qd, effort;  ///< per axis; from here to `force` one block, as in State::recorded
-  RecordArray x, scene_force, force;  ///< per contact coordinate
-  RecordArray aux;                    ///< per device
-  RecordArray freshness;              ///< per axis
-  std::uint32_t bytes = 0;            ///< of a whole record, a multiple of 8
+  std::uint32_t max_stale_ticks =
+      0;  ///< the first stale tick holds, then forces fade out, then a fault
 };
 
 struct Plan {
@@ -69,9 +61,35 @@ struct Plan {
   double rate_Hz = 1e3;
   std::span<const AxisPlan> axes;
   std::span<const DevicePlan> devices;
-  std::span<const CartesianAxis> cartesian_axes;
   std::span<const StuckWatch> stuck_watches;
+  std::span<const HomingPlan> homings;
+  std::span<const LowPassPlan> low_passes;
+  std::span<const LeastSquaresPlan> least_squares;
+  std::span<const FoawPlan> foaws;
+  std::span<const AlphaBetaGammaPlan> alpha_beta_gammas;
+
+  std::span<const CartesianAxis> cartesian_axes;
+  std::span<const Linkage> linkages;
+  std::span<const LinearMap> linear_maps;
+  std::span<const FiveBar> five_bars;
+  std::span<const Delta> deltas;
+  std::span<const Serial> serials;
+
+  std::span<const ForceSensor> force_sensors;
+  std::span<const GravityAxis> gravity_axes;
+  std::span<const GravityTip> gravity_tips;
+  std::span<const FrictionAxis> frictions;
+  std::span<const ObserverPlan> axis_observers;
+  std::span<const ObserverPlan> contact_observers;
+
   std::span<const PlaneContact> planes;
+
+  std::span<const TravelPlan> travels;
+  std::span<const PowerLimit> power_limits;
+  std::span<const ThermalPlan> thermals;
+  std::span<const WorkspacePlan> workspaces;
+  std::span<const EnableInput> enable_inputs;
+  std::span<const PassivityPlan> passivity_controllers;
   std::size_t coordinates = 0;
   RecordLayout record;
 };

@@ -4,17 +4,21 @@
 #include <cstring>
 #include <memory>
 
+#include "control/recorded.h"
+
 namespace hapticd::control {
 namespace {
 
 /// Loops with copies of constant size: at a few axes they cost less than a call of memcpy each.
-void put_axes(std::byte* slot, const RecordLayout& at, const TickInput& input) noexcept {
+void put_axes(std::byte* slot, const RecordLayout& at, const State& state,
+              const TickInput& input) noexcept {
   for (std::size_t i = 0; i < input.axes.size(); ++i) {
     const AxisSample& sample = input.axes[i];
     std::memcpy(slot + at.raw.offset + 8 * i, &sample.raw, 8);
     std::memcpy(slot + at.age_ns.offset + 8 * i, &sample.age_ns, 8);
     std::memcpy(slot + at.delivered.offset + 8 * i, &input.delivered[i], 8);
     slot[at.freshness.offset + i] = static_cast<std::byte>(sample.freshness);
+    slot[at.homed.offset + i] = static_cast<std::byte>(state.axes[i].homed);
   }
 }
 
@@ -37,22 +41,25 @@ double smallest(std::span<const double> values) noexcept {
 
 }  // namespace
 
-RecordLayout record_layout(std::size_t axes, std::size_t coordinates,
-                           std::size_t devices) noexcept {
+RecordLayout record_layout(const Plan& plan) noexcept {
   RecordLayout layout;
   std::size_t offset = sizeof(RecordHeader);
   const auto place = [&offset](RecordArray& array, std::size_t count, std::size_t bytes) {
     array = {static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(count)};
     offset += count * bytes;
   };
-  for (RecordArray* array :
-       {&layout.raw, &layout.age_ns, &layout.delivered, &layout.q, &layout.qd, &layout.effort}) {
+  const std::size_t axes = plan.axes.size(), devices = plan.devices.size();
+  for (RecordArray* array : {&layout.raw, &layout.age_ns, &layout.delivered})
     place(*array, axes, 8);
+  for (const RecordedField& field : kRecorded) {
+    const std::size_t count = field.per == Per::axis     ? axes
+                              : field.per == Per::device ? devices
+                                                         : plan.coordinates;
+    place(layout.*field.layout, field.named(plan) ? count : 0, 8);
   }
-  for (RecordArray* array : {&layout.x, &layout.scene_force, &layout.force})
-    place(*array, coordinates, 8);
   place(layout.aux, devices, sizeof(Aux));
   place(layout.freshness, axes, 1);
+  place(layout.homed, axes, 1);
   layout.bytes = static_cast<std::uint32_t>((offset + 7) / 8 * 8);
   return layout;
 }
@@ -78,7 +85,7 @@ void write_record(const Plan& plan, const State& state, const TickInput& input,
                                  .sequence = sequence});
   const RecordLayout& at = plan.record;
   std::memset(slot + at.bytes - 8, 0, 8);  // the padding behind the last array
-  put_axes(slot, at, input);
+  put_axes(slot, at, state, input);
   put_aux(slot, at, input.aux);
   std::memcpy(slot + at.q.offset, state.recorded.data(), state.recorded.size_bytes());
 }

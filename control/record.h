@@ -38,8 +38,8 @@ struct RecordHeader {
 };
 static_assert(sizeof(RecordHeader) == 80 && alignof(RecordHeader) == 8);
 
-/// Layout of a record for this many axes, coordinates and devices.
-RecordLayout record_layout(std::size_t axes, std::size_t coordinates, std::size_t devices) noexcept;
+/// Layout of a record of this plan; plan.record is not read.
+RecordLayout record_layout(const Plan& plan) noexcept;
 
 /// Writes one record of plan.record.bytes into `slot` (8-byte aligned, at least that long).
 void write_record(const Plan& plan, const State& state, const TickInput& input,

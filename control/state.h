@@ -4,33 +4,82 @@
 #include <span>
 
 #include "control/core/fault.h"
+#include "control/core/motion.h"
+#include "control/guard/ledger.h"
+#include "control/guard/passivity_controller.h"
+#include "control/kinematics/kinematics.h"
+#include "control/motion/estimators.h"
+#include "control/motion/homing.h"
+#include "control/observer/observer.h"
 
 namespace hapticd::control {
 
-/// Whether forces are on. Non-zero force only in `enabled`; it fades in and out by the ramp.
-enum class Mode : std::uint8_t { idle = 0, enabled = 1, fault = 2 };
+/// Whether forces are on. Non-zero force only in `enabled`, where it fades in and out by the ramp,
+/// and, bounded by the search's own limits, in `homing`.
+enum class Mode : std::uint8_t { idle = 0, enabled = 1, fault = 2, homing = 3 };
 
 struct AxisState {
   double raw = 0;                 ///< last raw value
   double unwrapped = 0;           ///< raw value counted on over every wrap
   double counts = 0;              ///< what this tick added to it
+  double zero = 0;                ///< m or rad: added to q since the axis was homed
   std::uint32_t stale_ticks = 0;  ///< ticks since the last fresh sample
   std::uint32_t still_ticks = 0;  ///< ticks under force without any change of `raw` (stuck watch)
-  bool seeded = false;            ///< a fresh value was seen: q is known
+  bool seeded = false;            ///< a fresh value was seen: q is known, up to homing
+  bool homed = false;             ///< q is absolute
+  Motion motion = Motion::reseeded;
 };
 
 struct State {
   std::span<AxisState> axes;
+  std::span<DeliveredState> delivered;  ///< per axis
+  std::span<HomingState> homings;       ///< beside the plan's arrays, entry by entry
+  std::span<LowPassState> low_passes;
+  std::span<WindowState> least_squares;
+  std::span<WindowState> foaws;
+  std::span<AlphaBetaGammaState> alpha_beta_gammas;
+  std::span<LinkageState> linkages;
+  std::span<ObserverState> axis_observers;
+  std::span<ObserverState> contact_observers;
+  std::span<PassivityState> passivity_controllers;
+  std::span<double> heat;      ///< 0 to 1, beside plan.thermals
+  std::span<double> jacobian;  ///< m or m/rad; Linkage::jacobian says where each begins
+
+  // Everything recorded is one block, in the order of control/recorded.h: a record copies it whole.
+  // A span whose work the plan does not name is empty.
   std::span<double> q;            ///< m or rad, per axis
   std::span<double> qd;           ///< m/s or rad/s, per axis
-  std::span<double> effort;       ///< N or N m, per axis
+  std::span<double> gravity;      ///< N or N m, per axis: compensation, before ramp and fade
+  std::span<double> friction;     ///< N or N m, per axis: compensation, before ramp and fade
+  std::span<double> observer;     ///< N or N m, per axis: of axis observers, before ramp and fade
+  std::span<double> residual;     ///< N or N m, per axis: of axis observers, before Q
+  std::span<double> travel;       ///< N or N m, per axis: springs at the ends of the travel
+  std::span<double> effort;       ///< N or N m, per axis: what is asked of the device
   std::span<double> x;            ///< m, contact coordinates
+  std::span<double> hand_force;   ///< N, contact coordinates: of the hand, measured
   std::span<double> scene_force;  ///< N on the contacts, before any guard
-  std::span<double> force;  ///< N on the contacts, after the guard; the slew limit starts from it
-  std::span<const double>
-      recorded;            ///< q to force in one block, in this order: a record copies it whole
-  std::span<double> v;     ///< m/s, contact coordinates
-  std::span<double> ramp;  ///< 0 to 1, per device: share of the force that is let through
+  std::span<double> observer_force;    ///< N, of contact observers, before ramp and fade
+  std::span<double> contact_residual;  ///< N, of contact observers, before Q
+  std::span<double> limited;           ///< N: scene_force less what the guard let through
+  std::span<double> force;             ///< N on the contacts, after the guard
+  std::span<double> work;              ///< J, per device: done by its motors since the start
+  std::span<double> reserve;           ///< J, per device: of its passivity controller
+  std::span<double> fade;  ///< 0 to 1, per device: what takes force out at once, of all reasons
+  std::span<const double> recorded;
+
+  std::span<double> v;  ///< m/s, contact coordinates
+  std::span<double>
+      slewed;  ///< N, contact coordinates: after limits, before fade; the slew limit starts from it
+  std::span<double>
+      contact_delivered;  ///< N: contact force that was delivered; filled for contact observers
+  std::span<double>
+      feedforward;  ///< N or N m, per axis: gravity, friction and travel in the last effort
+  std::span<double>
+      beside;  ///< N or N m, per axis: all in the last effort that is not the contact force
+  std::span<double>
+      stored;  ///< J, per device: in the springs that it touches; filled for passivity controllers
+  std::span<double> reach;  ///< 0 to 1, per device: 1 well inside the workspace (forward())
+  std::span<double> ramp;   ///< 0 to 1, per device: share of the force that is let through
   Mode mode = Mode::idle;
   bool adopted = false;  ///< first tick after carry_over()
   FaultReport fault;

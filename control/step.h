@@ -39,8 +39,9 @@ TickOutput step(const Plan& plan, State& state,
                 const TickInput& input) noexcept HAPTICD_NONBLOCKING;
 
 /// Hands the motion state, force and mode of `from` to `to` when a plan is swapped under a running
-/// loop. Both plans have the same devices and axes in the same order (the supervisor refuses any
-/// other reload).
-void carry_over(const State& from, State& to) noexcept HAPTICD_NONBLOCKING;
+/// loop. Both plans have the same devices, axes and kinematics in the same order (the supervisor
+/// refuses any other reload).
+void carry_over(const Plan& from_plan, const State& from, const Plan& to_plan,
+                State& to) noexcept HAPTICD_NONBLOCKING;
 
 }  // namespace hapticd::control

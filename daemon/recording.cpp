@@ -11,6 +11,7 @@
 
 #include "control/core/sample.h"
 #include "control/record.h"
+#include "control/recorded.h"
 
 namespace hapticd::daemon {
 namespace {
@@ -49,23 +50,57 @@ void add_header_fields(std::vector<Field>& fields) {
   add(fields, "sequence", "-", "u32", offsetof(RecordHeader, sequence));
 }
 
-/// One array of the layout: element i belongs to owners[i].
-struct ArrayFields {
-  RecordArray array;
-  const char* name;
-  const char* unit;
-  const char* type;
-};
+const char* unit_of(control::Quantity quantity, bool rotary) {
+  switch (quantity) {
+    case control::Quantity::position:
+      return rotary ? "rad" : "m";
+    case control::Quantity::velocity:
+      return rotary ? "rad/s" : "m/s";
+    case control::Quantity::effort:
+      return rotary ? "N*m" : "N";
+    case control::Quantity::metre:
+      return "m";
+    case control::Quantity::newton:
+      return "N";
+    case control::Quantity::joule:
+      return "J";
+    case control::Quantity::share:
+      break;
+  }
+  return "-";
+}
 
-template <std::size_t N>
-void add_arrays(std::vector<Field>& fields, const std::vector<std::string>& owners,
-                const std::array<ArrayFields, N>& arrays) {
+/// Element `i` of an array, if the plan has it.
+void add_element(std::vector<Field>& fields, const std::string& name, const char* unit,
+                 const char* type, RecordArray array, std::size_t i) {
+  if (i < array.count) add(fields, name, unit, type, array.offset + i * field_bytes(type));
+}
+
+/// What the state has for the i-th axis, coordinate or device, by control/recorded.h.
+void add_recorded(std::vector<Field>& fields, const std::vector<std::string>& owners,
+                  const control::RecordLayout& layout, control::Per per,
+                  const std::vector<bool>& rotary) {
   for (std::size_t i = 0; i < owners.size(); ++i) {
-    for (const ArrayFields& a : arrays) {
-      if (i < a.array.count) {
-        add(fields, owners[i] + a.name, a.unit, a.type, a.array.offset + i * field_bytes(a.type));
-      }
+    for (const control::RecordedField& field : control::kRecorded) {
+      if (field.per != per) continue;
+      const char* unit = unit_of(field.quantity, i < rotary.size() && rotary[i]);
+      add_element(fields, owners[i] + field.suffix, unit, "f64", layout.*field.layout, i);
     }
+  }
+}
+
+/// What the input had for each axis.
+void add_input_fields(std::vector<Field>& fields, const build::ProgramSpec& spec,
+                      const control::RecordLayout& layout) {
+  for (std::size_t i = 0; i < spec.axis_names.size(); ++i) {
+    const std::string& axis = spec.axis_names[i];
+    const bool rotary = i < spec.rotary.size() && spec.rotary[i];
+    add_element(fields, axis + ".raw", "-", "f64", layout.raw, i);
+    add_element(fields, axis + ".age_ns", "ns", "i64", layout.age_ns, i);
+    add_element(fields, axis + ".freshness", "-", "u8", layout.freshness, i);
+    add_element(fields, axis + ".homed", "-", "u8", layout.homed, i);
+    add_element(fields, axis + ".delivered", unit_of(control::Quantity::effort, rotary), "f64",
+                layout.delivered, i);
   }
 }
 
@@ -158,18 +193,10 @@ RecordingHeader recording_header(const build::Program& program, std::string conf
   header.config_text = std::move(config_text);
   header.record_bytes = layout.bytes;
   add_header_fields(header.fields);
-  add_arrays(header.fields, spec.axis_names,
-             std::array{ArrayFields{layout.raw, ".raw", "-", "f64"},
-                        ArrayFields{layout.age_ns, ".age_ns", "ns", "i64"},
-                        ArrayFields{layout.freshness, ".freshness", "-", "u8"},
-                        ArrayFields{layout.q, ".q", "m", "f64"},
-                        ArrayFields{layout.qd, ".qd", "m/s", "f64"},
-                        ArrayFields{layout.effort, ".effort", "N", "f64"},
-                        ArrayFields{layout.delivered, ".delivered", "N", "f64"}});
-  add_arrays(header.fields, spec.coordinate_names,
-             std::array{ArrayFields{layout.x, ".position", "m", "f64"},
-                        ArrayFields{layout.scene_force, ".scene_force", "N", "f64"},
-                        ArrayFields{layout.force, ".force", "N", "f64"}});
+  add_input_fields(header.fields, spec, layout);
+  add_recorded(header.fields, spec.axis_names, layout, control::Per::axis, spec.rotary);
+  add_recorded(header.fields, spec.coordinate_names, layout, control::Per::coordinate, {});
+  add_recorded(header.fields, spec.device_names, layout, control::Per::device, {});
   add_aux_fields(header.fields, spec.device_names, layout.aux);
   return header;
 }

@@ -132,7 +132,7 @@ void ServoThread::take_orders(CycleInput& input) noexcept {
 void ServoThread::adopt_plan() noexcept {
   build::Program* fresh = shared_.plans.take();
   if (fresh == nullptr) return;
-  control::carry_over(program_->state(), fresh->state());
+  control::carry_over(program_->plan(), program_->state(), fresh->plan(), fresh->state());
   shared_.plans.release(std::exchange(program_, fresh));
 }
 

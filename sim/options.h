@@ -1,13 +1,25 @@
 // The truth of a simulated device: what its plant, hand and wires really are. Filled by config/,
 // read by nobody else: no analysis and no compile of a plan may look at it.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "control/kinematics/kinematics.h"
 
 namespace hapticd::sim {
 
-/// One axis: mass and damper with Coulomb friction behind an encoder and a D/A converter.
+/// Mechanical ends of an axis: stiff, lossy springs.
+struct StopOptions {
+  double min_m = 0;
+  double max_m = 0;
+};
+
+/// One axis: mass and damper with Coulomb friction behind an encoder and a D/A converter. For a
+/// rotary axis read rad for m, N m for N, kg m^2 for kg.
 struct AxisOptions {
   double mass_kg = 0;       ///< > 0
   double damping_Ns_m = 0;  ///< >= 0
@@ -16,10 +28,14 @@ struct AxisOptions {
   double position_m = 0;    ///< at start, at rest
   double counts_per_m =
       1e9;  ///< not 0; negative: reversed. The value is floor(position * counts_per_m + noise)
-  int encoder_bits = 32;    ///< the value wraps into [0, 2^bits); up to 52; 0: never
-  double noise_counts = 0;  ///< standard deviation of the encoder noise
-  double dac_step_N = 0;    ///< effort is rounded to multiples of this; 0: exact
-  double max_effort_N = 0;  ///< saturation, > 0
+  int encoder_bits = 32;               ///< the value wraps into [0, 2^bits); up to 52; 0: never
+  double noise_counts = 0;             ///< standard deviation of the encoder noise
+  double dac_step_N = 0;               ///< effort is rounded to multiples of this; 0: exact
+  double max_effort_N = 0;             ///< saturation, > 0
+  bool relative = false;               ///< the encoder counts from 0 where the axis is at connect()
+  std::optional<double> index_m{};     ///< position of the encoder's index pulse
+  std::optional<StopOptions> stops{};  ///< none: it moves freely
+  double homed_at_s = 0;               ///< the device says `homed` from this device time on
 };
 
 /// One line of the hand's script: from `at_s` on. Lines are in the order of their times, which are
@@ -60,8 +76,32 @@ struct Failure {
   double size_m = 0;  ///< jump only
 };
 
+/// A digital input of the device from `at_s` of device time on.
+struct DigitalStep {
+  double at_s = 0;
+  std::uint32_t bits = 0;
+};
+
+/// A force sensor between hand and device; without one Aux::analogue stays 0.
+struct ForceSensorOptions {
+  double noise_N = 0;  ///< standard deviation
+};
+
+/// Axes that are joints of one linkage with a tip. AxisOptions::mass_kg is the inertia at the joint
+/// (motor and inner link's own as far as not named here); hand, scripted force and gravity act at
+/// the tip.
+struct LinkageOptions {
+  std::variant<control::LinearMap, control::FiveBar, control::Delta, control::Serial> geometry;
+  double inner_link_kg = 0;  ///< five-bar: uniform rods from base to elbow
+  double outer_link_kg = 0;  ///< five-bar: uniform rods from elbow to tip
+  double tip_kg = 0;
+  std::array<double, 3> gravity{};  ///< m/s^2, device frame
+  std::array<double, 3> hand_direction{
+      1, 0, 0};  ///< unit vector, device frame: of the script's force and position
+};
+
 struct DeviceOptions {
-  std::string name;
+  std::string name{};
   double period_s = 1e-3;
   double ramp_s = 0;  ///< the script starts this long after the device was armed
   int substeps = 10;  ///< of a tick: friction is solved, and extremes are observed, at these points
@@ -69,6 +109,9 @@ struct DeviceOptions {
   std::vector<AxisOptions> axes;
   HandOptions hand;
   std::vector<Failure> failures;
+  std::optional<LinkageOptions> linkage{};  ///< none: axes are independent of each other
+  std::optional<ForceSensorOptions> force_sensor{};
+  std::vector<DigitalStep> digital{};  ///< in the order of their times
 };
 
 }  // namespace hapticd::sim

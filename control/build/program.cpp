@@ -1,48 +1,133 @@
 #include "control/build/program.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "control/record.h"
+#include "control/recorded.h"
 
 namespace hapticd::build {
+namespace {
 
-Program::Program(ProgramSpec spec) : spec_(std::move(spec)) {
-  std::size_t coordinates = 0;
-  for (const control::DevicePlan& device : spec_.devices) {
-    coordinates += device.coordinates;
-    for (std::uint16_t i = 0; i < device.axes; ++i) {
-      cartesian_axes_.push_back({static_cast<std::uint16_t>(device.first_axis + i),
-                                 static_cast<std::uint16_t>(device.first_coordinate + i)});
-    }
+/// Cuts one block of zeros into the spans that are taken from it, in the order of taking.
+class Block {
+ public:
+  Block(std::vector<double>& storage, std::size_t size) : storage_(storage) {
+    storage_.assign(size, 0.0);
+  }
+  std::span<double> take(std::size_t count) {
+    const std::span<double> part(storage_.data() + taken_, count);
+    taken_ += count;
+    return part;
   }
 
-  const std::size_t axes = spec_.axes.size();
-  axis_states_.resize(axes);
-  recorded_.assign(3 * axes + 3 * coordinates, 0.0);
-  v_.assign(coordinates, 0.0);
-  ramp_.assign(spec_.devices.size(), 0.0);
+ private:
+  std::vector<double>& storage_;
+  std::size_t taken_ = 0;
+};
 
+}  // namespace
+
+Program::Program(ProgramSpec spec) : spec_(std::move(spec)) {
+  complete_kinematics();
+  make_plan();
+  make_state();
+}
+
+std::size_t Program::coordinates() const noexcept {
+  std::size_t count = 0;
+  for (const control::DevicePlan& device : spec_.devices) count += device.coordinates;
+  return count;
+}
+
+void Program::complete_kinematics() {
+  std::vector<bool> mapped(spec_.axes.size(), false);
+  for (const control::CartesianAxis& pair : spec_.cartesian_axes) mapped[pair.axis] = true;
+  for (control::Linkage& linkage : spec_.linkages) {
+    for (std::size_t i = 0; i < linkage.axes; ++i) mapped[linkage.first_axis + i] = true;
+    linkage.jacobian = static_cast<std::uint32_t>(jacobian_size_);
+    jacobian_size_ += std::size_t{linkage.axes} * linkage.coordinates;
+  }
+  for (const control::DevicePlan& device : spec_.devices) {
+    for (std::uint16_t i = 0; i < device.axes; ++i) {
+      if (mapped[device.first_axis + i]) continue;
+      spec_.cartesian_axes.push_back(
+          {.axis = static_cast<std::uint16_t>(device.first_axis + i),
+           .coordinate = static_cast<std::uint16_t>(device.first_coordinate + i)});
+    }
+  }
+}
+
+void Program::make_plan() {
   plan_ = {.period_s = spec_.period_s,
            .rate_Hz = 1.0 / spec_.period_s,
            .axes = spec_.axes,
            .devices = spec_.devices,
-           .cartesian_axes = cartesian_axes_,
            .stuck_watches = spec_.stuck_watches,
+           .homings = spec_.homings,
+           .low_passes = spec_.low_passes,
+           .least_squares = spec_.least_squares,
+           .foaws = spec_.foaws,
+           .alpha_beta_gammas = spec_.alpha_beta_gammas,
+           .cartesian_axes = spec_.cartesian_axes,
+           .linkages = spec_.linkages,
+           .linear_maps = spec_.linear_maps,
+           .five_bars = spec_.five_bars,
+           .deltas = spec_.deltas,
+           .serials = spec_.serials,
+           .force_sensors = spec_.force_sensors,
+           .gravity_axes = spec_.gravity_axes,
+           .gravity_tips = spec_.gravity_tips,
+           .frictions = spec_.frictions,
+           .axis_observers = spec_.axis_observers,
+           .contact_observers = spec_.contact_observers,
            .planes = spec_.planes,
-           .coordinates = coordinates,
-           .record = control::record_layout(spec_.axes.size(), coordinates, spec_.devices.size())};
-  state_.axes = axis_states_;
-  state_.recorded = recorded_;
-  auto next = recorded_.begin();
-  const auto take = [&next](std::size_t count) {
-    const std::span<double> part(next, count);
-    next += static_cast<std::ptrdiff_t>(count);
-    return part;
+           .travels = spec_.travels,
+           .power_limits = spec_.power_limits,
+           .thermals = spec_.thermals,
+           .workspaces = spec_.workspaces,
+           .enable_inputs = spec_.enable_inputs,
+           .passivity_controllers = spec_.passivity_controllers,
+           .coordinates = coordinates(),
+           .record = {}};
+  plan_.record = control::record_layout(plan_);
+}
+
+void Program::make_state() {
+  const auto make = [](auto& storage, auto& span, std::size_t count) {
+    storage.resize(count);
+    span = storage;
   };
-  for (auto* part : {&state_.q, &state_.qd, &state_.effort}) *part = take(axes);
-  for (auto* part : {&state_.x, &state_.scene_force, &state_.force}) *part = take(coordinates);
-  state_.v = v_;
-  state_.ramp = ramp_;
+  make(axes_, state_.axes, spec_.axes.size());
+  make(delivered_, state_.delivered, spec_.axes.size());
+  make(homings_, state_.homings, spec_.homings.size());
+  make(low_passes_, state_.low_passes, spec_.low_passes.size());
+  make(least_squares_, state_.least_squares, spec_.least_squares.size());
+  make(foaws_, state_.foaws, spec_.foaws.size());
+  make(alpha_beta_gammas_, state_.alpha_beta_gammas, spec_.alpha_beta_gammas.size());
+  make(linkages_, state_.linkages, spec_.linkages.size());
+  make(axis_observers_, state_.axis_observers, spec_.axis_observers.size());
+  make(contact_observers_, state_.contact_observers, spec_.contact_observers.size());
+  make(passivity_controllers_, state_.passivity_controllers, spec_.passivity_controllers.size());
+  make(heat_, state_.heat, spec_.thermals.size());
+  make(jacobian_, state_.jacobian, jacobian_size_);
+
+  std::size_t size = 0;
+  for (const control::RecordedField& field : control::kRecorded)
+    size += (plan_.record.*field.layout).count;
+  Block block(recorded_, size);
+  for (const control::RecordedField& field : control::kRecorded)
+    state_.*field.state = block.take((plan_.record.*field.layout).count);
+  state_.recorded = recorded_;
+
+  const std::size_t axes = spec_.axes.size(), devices = spec_.devices.size();
+  Block rest(unrecorded_, 3 * plan_.coordinates + 2 * axes + 3 * devices);
+  for (auto* part : {&state_.v, &state_.slewed, &state_.contact_delivered})
+    *part = rest.take(plan_.coordinates);
+  for (auto* part : {&state_.feedforward, &state_.beside}) *part = rest.take(axes);
+  for (auto* part : {&state_.stored, &state_.reach, &state_.ramp}) *part = rest.take(devices);
+  std::fill(state_.reach.begin(), state_.reach.end(), 1.0);
+  std::fill(state_.fade.begin(), state_.fade.end(), 1.0);
 }
 
 }  // namespace hapticd::build

@@ -50,6 +50,18 @@ constexpr std::array kFaults = {
     FaultEntry{Fault::output_not_finite, "output_not_finite",
                "a computed force was not a number: a defect of hapticd", "guard",
                "keep the flight recording and report it", ""},
+    FaultEntry{
+        Fault::kinematics, "kinematics", "no pose of the device fits the angles of its joints",
+        "guard",
+        "check encoder offsets, homing and the lengths in kinematics, then `hapticctl enable`", ""},
+    FaultEntry{Fault::homing, "homing",
+               "an axis did not find its reference in homing.timeout_s, or lost it", "guard",
+               "see that the axis moves freely to its reference, then `hapticctl enable`", "s"},
+    FaultEntry{Fault::travel, "travel",
+               "an axis went beyond the end of its travel by more than travel.margin", "guard",
+               "move the axis back by hand and check homing, then `hapticctl enable`", ""},
+    FaultEntry{Fault::workspace, "workspace", "a contact left the box guard.workspace", "guard",
+               "move the device back into the box, then `hapticctl enable`", "m"},
 };
 static_assert(kFaults.size() == static_cast<std::size_t>(Fault::count_));
 
@@ -68,6 +80,27 @@ constexpr std::array kLimits = {
     LimitEntry{Limit::reseeded, "reseeded",
                "velocity was started anew after missed ticks or samples, and is zero for one tick",
                "watch the count of missed ticks in `hapticctl status`"},
+    LimitEntry{Limit::stale, "stale",
+               "forces were faded out because an axis gave no fresh sample for several ticks",
+               "check bus load, cable and the device's rate"},
+    LimitEntry{
+        Limit::singular, "singular",
+        "forces were faded out because the linkage is near a pose in which it cannot make them",
+        "keep away from the edge of the workspace"},
+    LimitEntry{Limit::power, "power",
+               "efforts were cut so that the motors give no more than guard.max_power_W",
+               "soften the scene, or raise the limit if device and user allow it"},
+    LimitEntry{Limit::temperature, "temperature",
+               "an effort was cut so that its motor does not overheat (actuator.thermal)",
+               "press less for a while"},
+    LimitEntry{Limit::travel, "travel", "an axis is pushed back from the end of its travel",
+               "move the device back"},
+    LimitEntry{Limit::compensation, "compensation",
+               "a disturbance observer asked for more than its limit",
+               "check the model of the axis, or raise the observer's limit"},
+    LimitEntry{Limit::passivity, "passivity",
+               "the passivity controller weakened the force because the scene gave out energy",
+               "soften the scene: it is not passive on this device"},
 };
 
 }  // namespace

@@ -26,6 +26,10 @@ enum class Fault : std::uint8_t {
   encoder_stuck,
   velocity,
   output_not_finite,
+  kinematics,
+  homing,
+  travel,
+  workspace,
   count_
 };
 
@@ -37,6 +41,13 @@ enum class Limit : std::uint32_t {
   actuator = 1u << 3,
   sample_held = 1u << 4,
   reseeded = 1u << 5,
+  stale = 1u << 6,
+  singular = 1u << 7,
+  power = 1u << 8,
+  temperature = 1u << 9,
+  travel = 1u << 10,
+  compensation = 1u << 11,
+  passivity = 1u << 12,
 };
 
 class LimitFlags {

@@ -17,8 +17,10 @@ struct AxisSample {
   double raw = 0;             ///< encoder value in the device's unit: counts or turns
   std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC when it was measured, as well as the driver knows
   std::int64_t age_ns = 0;    ///< age at collect
+  double index_raw = 0;       ///< `raw` at the latest index pulse; to be read only if `index`
   Freshness freshness = Freshness::missing;
   bool homed = false;              ///< the device says that its zero is known
+  bool index = false;              ///< the index pulse has been seen since connect()
   std::uint16_t drive_limits = 0;  ///< limiters that the drive itself reports, driver-specific bits
   std::uint32_t drive_faults = 0;  ///< faults that the drive itself reports, driver-specific bits
 };

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "control/motion/estimators.h"
+#include "control/motion/homing.h"
+
 namespace hapticd::control {
 namespace {
 
@@ -47,13 +50,14 @@ class Unusual {
     axis_.counts = counts;
     axis_.unwrapped += counts;
     axis_.stale_ticks = 0;
-    q_ = plan_.unit_per_raw * axis_.unwrapped + plan_.offset;
+    q_ = plan_.unit_per_raw * axis_.unwrapped + (plan_.offset + axis_.zero);
   }
 
   void seed(double raw) noexcept {
     axis_.seeded = true;
     axis_.unwrapped = 0;
     move(raw, wrap(raw, plan_.modulus_raw));
+    axis_.motion = Motion::reseeded;
     qd_ = 0;
   }
 
@@ -62,6 +66,7 @@ class Unusual {
       findings_.ready = false;
       return;
     }
+    axis_.motion = Motion::held;
     ++axis_.stale_ticks;
     axis_.still_ticks = 0;  // nothing is known about the encoder: the stuck watch starts anew
     findings_.limits.set(Limit::sample_held);
@@ -79,6 +84,7 @@ class Unusual {
     const double counts = wrap(raw - axis_.raw, plan_.modulus_raw);
     const double moved = std::abs(plan_.unit_per_raw * counts);
     move(raw, counts);
+    axis_.motion = ticks > 1 ? Motion::reseeded : Motion::advanced;
     qd_ = ticks > 1 ? 0 : plan_.unit_per_raw * counts * rate_Hz_;
     if (ticks > 1) findings_.limits.set(Limit::reseeded);
     if (moved > plan_.max_step * ticks) {
@@ -116,7 +122,8 @@ bool sense_usual(const AxisPlan& plan, double rate_Hz, const AxisSample& sample,
   axis.raw = sample.raw;
   axis.counts = counts;
   axis.unwrapped += counts;
-  q = plan.unit_per_raw * axis.unwrapped + plan.offset;
+  axis.motion = Motion::advanced;
+  q = plan.unit_per_raw * axis.unwrapped + (plan.offset + axis.zero);
   qd = velocity;
   return true;
 }
@@ -158,6 +165,8 @@ void sense(const Plan& plan, State& state, const TickInput& input, Findings& fin
     if (!done) sense_unusual(plan, state, input, i, findings);
   }
   watch_stuck(plan, state, input, findings);
+  home(plan, state, input, findings);
+  estimate_velocity(plan, state);
 }
 
 }  // namespace hapticd::control

@@ -220,7 +220,7 @@ TEST(Guard, SwappedPlanThatWouldStepTheForceFadesInsteadOfStepping) {
   Rig rig(soft);
   rig.enable_at(-0.004);
   Rig next(hard);
-  carry_over(rig.program.state(), next.program.state());
+  carry_over(rig.program.plan(), rig.program.state(), next.program.plan(), next.program.state());
   next.input.enable = true;
   double last = 4.0, least = 4.0;
   for (int i = 0; i < 60; ++i) {
@@ -238,7 +238,7 @@ TEST(Guard, SwappedPlanThatFeelsTheSameDoesNotFade) {
   Rig rig(spec);
   rig.enable_at(-0.004);
   Rig next(spec);
-  carry_over(rig.program.state(), next.program.state());
+  carry_over(rig.program.plan(), rig.program.state(), next.program.plan(), next.program.state());
   next.input.enable = true;
   const TickOutput output = next.at(-0.004);
   EXPECT_NEAR(output.effort[0], 4.0, 1e-12);

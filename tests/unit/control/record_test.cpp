@@ -17,7 +17,7 @@ T read(const std::vector<std::byte>& record, std::uint32_t offset) {
 }
 
 TEST(Record, ArraysFollowTheHeaderWithoutOverlap) {
-  const RecordLayout layout = record_layout(3, 3, 1);
+  const RecordLayout layout = build::Program(test::spec_of(3)).plan().record;
   EXPECT_EQ(layout.raw.offset, sizeof(RecordHeader));
   EXPECT_EQ(layout.age_ns.offset, layout.raw.offset + 3 * 8);
   EXPECT_EQ(layout.freshness.offset, layout.aux.offset + sizeof(Aux));

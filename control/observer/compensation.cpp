@@ -1,0 +1,11 @@
+#include "control/observer/compensation.h"
+
+#include "control/plan.h"
+#include "control/state.h"
+#include "control/step.h"
+
+namespace hapticd::control {
+
+void compensate(const Plan&, State&, const TickInput&, Findings&) noexcept {}
+
+}  // namespace hapticd::control
