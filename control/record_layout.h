@@ -8,6 +8,7 @@ namespace hapticd::control {
 struct RecordArray {
   std::uint32_t offset = 0;
   std::uint32_t count = 0;
+  bool operator==(const RecordArray&) const = default;
 };
 
 struct RecordLayout {
@@ -16,10 +17,11 @@ struct RecordLayout {
   RecordArray q, qd, gravity, friction, observer, residual, travel, effort;  ///< per axis
   RecordArray x, hand_force, scene_force, observer_force, contact_residual, limited,
       force;                        ///< per coordinate
-  RecordArray work, reserve, fade;  ///< per device
+  RecordArray work, reserve, gain, fade;  ///< per device
   RecordArray aux;                  ///< per device
   RecordArray freshness, homed;     ///< per axis, one byte each
   std::uint32_t bytes = 0;          ///< of a whole record, a multiple of 8
+  bool operator==(const RecordLayout&) const = default;
 };
 
 }  // namespace hapticd::control

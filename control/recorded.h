@@ -91,6 +91,8 @@ inline constexpr std::array kRecorded = {
                   recorded_detail::always},
     RecordedField{&State::reserve, &RecordLayout::reserve, ".reserve", Per::device, Quantity::joule,
                   recorded_detail::controller},
+    RecordedField{&State::gain, &RecordLayout::gain, ".gain", Per::device, Quantity::share,
+                  recorded_detail::controller},
     RecordedField{&State::fade, &RecordLayout::fade, ".fade", Per::device, Quantity::share,
                   recorded_detail::always},
 };

@@ -32,7 +32,7 @@ struct AxisState {
 
 struct State {
   std::span<AxisState> axes;
-  std::span<DeliveredState> delivered;  ///< per axis
+  std::span<LedgerState> ledger;  ///< per axis
   std::span<HomingState> homings;       ///< beside the plan's arrays, entry by entry
   std::span<LowPassState> low_passes;
   std::span<WindowState> least_squares;
@@ -64,20 +64,19 @@ struct State {
   std::span<double> force;             ///< N on the contacts, after the guard
   std::span<double> work;              ///< J, per device: done by its motors since the start
   std::span<double> reserve;           ///< J, per device: of its passivity controller
+  std::span<double> gain;  ///< 0 to 1, per device: of its passivity controller
   std::span<double> fade;  ///< 0 to 1, per device: what takes force out at once, of all reasons
   std::span<const double> recorded;
 
   std::span<double> v;  ///< m/s, contact coordinates
-  std::span<double>
-      slewed;  ///< N, contact coordinates: after limits, before fade; the slew limit starts from it
-  std::span<double>
-      contact_delivered;  ///< N: contact force that was delivered; filled for contact observers
-  std::span<double>
-      feedforward;  ///< N or N m, per axis: gravity, friction and travel in the last effort
-  std::span<double>
-      beside;  ///< N or N m, per axis: all in the last effort that is not the contact force
-  std::span<double>
-      stored;  ///< J, per device: in the springs that it touches; filled for passivity controllers
+  /// N, contact coordinates: after the limits, before the fade; the slew limit starts from it.
+  std::span<double> slewed;
+  /// N, contact coordinates: contact force that was delivered; filled for contact observers.
+  std::span<double> contact_delivered;
+  /// N or N m, per axis: gravity, friction and travel in the last effort.
+  std::span<double> feedforward;
+  /// N or N m, per axis: all in the last effort that is not the contact force.
+  std::span<double> beside;
   std::span<double> reach;  ///< 0 to 1, per device: 1 well inside the workspace (forward())
   std::span<double> ramp;   ///< 0 to 1, per device: share of the force that is let through
   Mode mode = Mode::idle;

@@ -49,7 +49,7 @@ void carry(std::span<const Entry> from_plans, std::span<Kept> from, std::span<co
 void carry_over(const Plan& from_plan, const State& from, const Plan& to_plan,
                 State& to) noexcept HAPTICD_NONBLOCKING {
   std::copy(from.axes.begin(), from.axes.end(), to.axes.begin());
-  std::copy(from.delivered.begin(), from.delivered.end(), to.delivered.begin());
+  std::copy(from.ledger.begin(), from.ledger.end(), to.ledger.begin());
   std::copy(from.linkages.begin(), from.linkages.end(), to.linkages.begin());
   std::copy(from.jacobian.begin(), from.jacobian.end(), to.jacobian.begin());
   for (const auto part :

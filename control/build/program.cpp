@@ -99,7 +99,7 @@ void Program::make_state() {
     span = storage;
   };
   make(axes_, state_.axes, spec_.axes.size());
-  make(delivered_, state_.delivered, spec_.axes.size());
+  make(ledger_, state_.ledger, spec_.axes.size());
   make(homings_, state_.homings, spec_.homings.size());
   make(low_passes_, state_.low_passes, spec_.low_passes.size());
   make(least_squares_, state_.least_squares, spec_.least_squares.size());
@@ -121,11 +121,11 @@ void Program::make_state() {
   state_.recorded = recorded_;
 
   const std::size_t axes = spec_.axes.size(), devices = spec_.devices.size();
-  Block rest(unrecorded_, 3 * plan_.coordinates + 2 * axes + 3 * devices);
+  Block rest(unrecorded_, 3 * plan_.coordinates + 2 * axes + 2 * devices);
   for (auto* part : {&state_.v, &state_.slewed, &state_.contact_delivered})
     *part = rest.take(plan_.coordinates);
   for (auto* part : {&state_.feedforward, &state_.beside}) *part = rest.take(axes);
-  for (auto* part : {&state_.stored, &state_.reach, &state_.ramp}) *part = rest.take(devices);
+  for (auto* part : {&state_.reach, &state_.ramp}) *part = rest.take(devices);
   std::fill(state_.reach.begin(), state_.reach.end(), 1.0);
   std::fill(state_.fade.begin(), state_.fade.end(), 1.0);
 }

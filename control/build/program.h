@@ -68,7 +68,7 @@ class Program {
 
   ProgramSpec spec_;
   std::vector<control::AxisState> axes_;
-  std::vector<control::DeliveredState> delivered_;
+  std::vector<control::LedgerState> ledger_;
   std::vector<control::HomingState> homings_;
   std::vector<control::LowPassState> low_passes_;
   std::vector<control::WindowState> least_squares_, foaws_;

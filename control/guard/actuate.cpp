@@ -51,15 +51,6 @@ void add_compensation(const Plan& plan, State& state) noexcept {
   }
 }
 
-bool all_finite(std::span<const double> efforts, std::size_t& worst) noexcept {
-  for (std::size_t i = 0; i < efforts.size(); ++i) {
-    if (std::isfinite(efforts[i])) continue;
-    worst = i;
-    return false;
-  }
-  return true;
-}
-
 bool clamp(double& effort, double limit) noexcept {
   if (std::abs(effort) <= limit) return false;
   effort = std::copysign(limit, effort);
@@ -96,10 +87,22 @@ void limit_power(const Plan& plan, State& state, Findings& findings) noexcept {
   }
 }
 
-void limit_effort(const Plan& plan, State& state, Findings& findings) noexcept {
-  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
-    if (clamp(state.effort[i], plan.axes[i].max_effort)) findings.limits.set(Limit::actuator);
+/// False: an effort is not a number.
+bool limit_effort(const Plan& plan, State& state, Findings& findings) noexcept {
+  const std::span<const AxisPlan> axes = plan.axes;
+  const std::span<double> efforts = state.effort;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (std::abs(efforts[i]) <= axes[i].max_effort) continue;
+    if (!std::isfinite(efforts[i])) {
+      findings.report({.code = Fault::output_not_finite,
+                       .axis = static_cast<std::uint16_t>(i),
+                       .found = efforts[i]});
+      return false;
+    }
+    efforts[i] = std::copysign(axes[i].max_effort, efforts[i]);
+    findings.limits.set(Limit::actuator);
   }
+  return true;
 }
 
 }  // namespace
@@ -111,16 +114,11 @@ void actuate(const Plan& plan, State& state, Findings& findings) noexcept {
     transpose(plan, state, state.force, state.effort);
     add_compensation(plan, state);
   }
-  std::size_t worst = 0;
-  if (!all_finite(state.effort, worst)) {
-    findings.report({.code = Fault::output_not_finite,
-                     .axis = static_cast<std::uint16_t>(worst),
-                     .found = state.effort[worst]});
+  if (!limit_effort(plan, state, findings)) {
     fail(state, findings.fault);
     zero_force(state);
     return;
   }
-  limit_effort(plan, state, findings);
   limit_temperature(plan, state, findings);
   limit_power(plan, state, findings);
 }

@@ -100,15 +100,7 @@ void fade(const Plan& plan, State& state, Findings& findings) noexcept {
   }
 }
 
-}  // namespace
-
-void guard(const Plan& plan, State& state, Findings& findings) noexcept {
-  fade(plan, state, findings);
-  control_passivity(plan, state, findings);
-  if (state.mode != Mode::enabled) {
-    zero_force(state);
-    return;
-  }
+void guard_devices(const Plan& plan, State& state, Findings& findings) noexcept {
   for (std::size_t d = 0; d < plan.devices.size(); ++d) {
     const DevicePlan& device = plan.devices[d];
     state.ramp[d] = advance_ramp(state.ramp[d], device.ramp_per_tick, findings.enable);
@@ -121,6 +113,18 @@ void guard(const Plan& plan, State& state, Findings& findings) noexcept {
     store(difference(scene_force, force), device, state.limited);
   }
   state.adopted = false;
+}
+
+}  // namespace
+
+void guard(const Plan& plan, State& state, Findings& findings) noexcept {
+  fade(plan, state, findings);
+  if (state.mode == Mode::enabled) {
+    guard_devices(plan, state, findings);
+  } else {
+    zero_force(state);
+  }
+  control_passivity(plan, state, findings);
 }
 
 }  // namespace hapticd::control

@@ -1,10 +1,15 @@
 // The energy ledger: work that the motors of each device did on it [J], booked on what was
-// delivered, over the period that has just ended (derivation and error bound in ledger.cpp):
+// delivered, over the period that has just ended:
 //
 //   W += sum over axes of [(1 - t/T) u_{k-n} + (t/T) u_{k-n-1}] (q_{k+1} - q_k),  latency = n T + t
 //
-// It is exact for t = 0; else its error in one tick is at most |u_{k-n} - u_{k-n-1}| a t (T - t)/2
-// with a the largest acceleration. Over missed ticks the last effort was held.
+// Exact for t = 0. Else, with e = u_{k-n} - u_{k-n-1} and s the way covered in the first t of the
+// period, the error is e (s - (t/T) (q_{k+1} - q_k)), and as |s - (t/T) dq| <= a t (T - t) / 2 for an
+// acceleration of at most a, it is at most |e| a t (T - t) / 2. The encoder adds at most one count
+// times the change of the effort in every tick.
+//
+// Over missed ticks the last effort was held; over samples that did not come the mean of what was
+// delivered is booked on the way covered, when a sample comes.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,20 +18,29 @@
 
 namespace hapticd::control {
 
+struct AxisPlan;
 struct Plan;
 struct State;
 struct TickInput;
 
-/// Delivered efforts of an axis by age in ticks: delivered[0] came with this tick's input.
-struct DeliveredState {
-  std::array<double, kMaxDelayTicks + 2> delivered{};
-  double q = 0;        ///< m or rad: of the tick before
-  bool known = false;  ///< q is
+/// Efforts of an axis on their way to becoming work.
+struct HeldEffort {
+  std::array<double, kMaxDelayTicks + 2> delivered{};  ///< by age in ticks
+  double sum = 0;           ///< N or N m: of the efforts in force since the last fresh sample
+  std::uint32_t ticks = 0;  ///< how many are in the sum
 };
 
-/// Books the period that has just ended: state.work. Runs before forward(), as the
-/// Jacobians still are those that the efforts were made with: contact-space observers get the force
-/// that was delivered from here, and passivity controllers what the contact force did.
+struct LedgerState {
+  HeldEffort effort;
+  double q = 0;                   ///< m or rad: at the last fresh sample
+  double moved = 0;               ///< m or rad: by which q changed this tick
+  std::uint32_t moved_ticks = 0;  ///< in so many ticks; 0: there was no fresh sample
+  bool known = false;             ///< q is
+};
+
+/// Books the period that has just ended: state.work, and what the contact force did, for passivity
+/// controllers. Fills state.contact_delivered for contact observers. Runs before forward(), as the
+/// Jacobians still are those that the efforts were made with.
 void book(const Plan& plan, State& state, const TickInput& input) noexcept;
 
 }  // namespace hapticd::control

@@ -28,6 +28,7 @@ class Unusual {
         q_(state.q[index]),
         qd_(state.qd[index]),
         index_(index),
+        driven_(state.axes[index].homed || state.mode == Mode::homing),
         findings_(findings) {}
 
   void sense(const AxisSample& sample, std::int64_t missed_ticks,
@@ -54,7 +55,7 @@ class Unusual {
   }
 
   void seed(double raw) noexcept {
-    axis_.seeded = true;
+    axis_.seeded = axis_.homed = true;  // home() knows better where there is something to find
     axis_.unwrapped = 0;
     move(raw, wrap(raw, plan_.modulus_raw));
     axis_.motion = Motion::reseeded;
@@ -87,6 +88,7 @@ class Unusual {
     axis_.motion = ticks > 1 ? Motion::reseeded : Motion::advanced;
     qd_ = ticks > 1 ? 0 : plan_.unit_per_raw * counts * rate_Hz_;
     if (ticks > 1) findings_.limits.set(Limit::reseeded);
+    if (!driven_) return;  // nobody drives it yet, and a device that finds its zero may jump
     if (moved > plan_.max_step * ticks) {
       findings_.report({.code = Fault::encoder_jump,
                         .axis = index_,
@@ -106,6 +108,7 @@ class Unusual {
   double& q_;
   double& qd_;
   const std::uint16_t index_;
+  const bool driven_;
   Findings& findings_;
 };
 
@@ -165,7 +168,7 @@ void sense(const Plan& plan, State& state, const TickInput& input, Findings& fin
     if (!done) sense_unusual(plan, state, input, i, findings);
   }
   watch_stuck(plan, state, input, findings);
-  home(plan, state, input, findings);
+  if (!plan.homings.empty()) home(plan, state, input, findings);
   estimate_velocity(plan, state);
 }
 

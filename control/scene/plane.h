@@ -22,6 +22,9 @@ struct PlaneContact {
   double damping = 0;                                   ///< N s/m, >= 0
 };
 
+/// Energy [J] in the plane's spring with the contact at `x` [m].
+double stored_energy(const PlaneContact& plane, const double* x) noexcept;
+
 /// Adds the plane's force [N] on a contact at `x` [m] with velocity `v` [m/s]; all are
 /// `plane.coordinates` long.
 void add_force(const PlaneContact& plane, const double* x, const double* v, double* force) noexcept;

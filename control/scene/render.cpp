@@ -15,6 +15,21 @@ void add_all(std::span<const Object> objects, State& state) noexcept {
 
 }  // namespace
 
+double stored_energy(const PlaneContact& plane, const double* x) noexcept {
+  double depth = plane.offset;
+  for (std::size_t i = 0; i < plane.coordinates; ++i) depth -= plane.normal[i] * x[i];
+  return depth > 0 ? 0.5 * plane.stiffness * depth * depth : 0;
+}
+
+double stored_energy(const Plan& plan, const State& state, const DevicePlan& device) noexcept {
+  double sum = 0;
+  for (const PlaneContact& plane : plan.planes) {
+    if (plane.first_coordinate == device.first_coordinate)
+      sum += stored_energy(plane, &state.x[plane.first_coordinate]);
+  }
+  return sum;
+}
+
 void add_force(const PlaneContact& plane, const double* x, const double* v,
                double* force) noexcept {
   double depth = plane.offset;

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "tests/support/program_fixture.h"
+#include "tests/support/full_program.h"
 
 namespace hapticd::control {
 namespace {
@@ -49,40 +49,108 @@ build::ProgramSpec random_spec() {
   return spec;
 }
 
-void random_tick(Rig& rig) {
+/// Everything that a plan can name, some of it left out.
+build::ProgramSpec random_full_spec() {
+  auto spec = test::full_spec();
+  const auto sometimes = [](auto& entries) {
+    if (*rc::gen::inRange(0, 4) == 0) entries.clear();
+  };
+  sometimes(spec.low_passes);
+  sometimes(spec.least_squares);
+  sometimes(spec.foaws);
+  sometimes(spec.alpha_beta_gammas);
+  sometimes(spec.homings);
+  sometimes(spec.force_sensors);
+  sometimes(spec.axis_observers);
+  sometimes(spec.contact_observers);
+  sometimes(spec.gravity_axes);
+  sometimes(spec.gravity_tips);
+  sometimes(spec.frictions);
+  sometimes(spec.travels);
+  sometimes(spec.thermals);
+  sometimes(spec.power_limits);
+  sometimes(spec.workspaces);
+  sometimes(spec.passivity_controllers);
+  sometimes(spec.planes);
+  spec.devices[0].max_slew = *rc::gen::element(0.01, 0.5, 100.0);
+  return spec;
+}
+
+/// `calm`: every axis moves a little, as a hand would move it, so that forces stay on.
+void random_tick(Rig& rig, bool calm = false) {
   for (AxisSample& sample : rig.samples) {
-    sample.raw = *raw_value();
+    sample.raw = calm ? sample.raw + *rc::gen::inRange(-300, 300) : *raw_value();
+    sample.homed = calm || *rc::gen::weightedElement<bool>({{9, true}, {1, false}});
     sample.freshness = *rc::gen::weightedElement<Freshness>(
-        {{10, Freshness::fresh}, {1, Freshness::missing}, {1, Freshness::repeated}});
+        {{calm ? 100 : 10, Freshness::fresh}, {1, Freshness::missing}, {1, Freshness::repeated}});
+  }
+  for (Aux& aux : rig.aux) {
+    aux.digital = calm ? 1 : *rc::gen::weightedElement<std::uint32_t>({{9, 1}, {1, 0}, {1, 3}});
+    for (double& channel : aux.analogue)
+      channel = *rc::gen::weightedOneOf<double>(
+          {{9, rc::gen::element(0.0, 1.0, -5.0)}, {1, any_double()}});
   }
   rig.input.missed_ticks = *rc::gen::weightedElement<std::int64_t>({{10, 0}, {1, 1}, {1, 1000000}});
   rig.input.enable = *rc::gen::weightedElement<bool>({{9, true}, {1, false}});
   rig.input.clear_fault = *rc::gen::arbitrary<bool>();
-  rig.input.host_fault.code =
-      *rc::gen::weightedElement<Fault>({{20, Fault::none}, {1, Fault::estop}, {1, Fault::overrun}});
+  rig.input.host_fault.code = calm ? Fault::none
+                                   : *rc::gen::weightedElement<Fault>({{20, Fault::none},
+                                                                       {1, Fault::estop},
+                                                                       {1, Fault::overrun}});
 }
 
-RC_GTEST_PROP(Step, AnyInputGivesAFiniteOutputInsideEveryLimit, ()) {
-  Rig rig(random_spec());
-  std::vector<double> last(rig.program.plan().axes.size(), 0.0);
-  for (int tick = *rc::gen::inRange(1, 60); tick > 0; --tick) {
-    random_tick(rig);
-    const TickOutput output = rig.run();
-    double square = 0, change = 0;
-    for (std::size_t i = 0; i < last.size(); ++i) {
-      RC_ASSERT(std::isfinite(output.effort[i]));
-      RC_ASSERT(std::abs(output.effort[i]) <= rig.program.plan().axes[i].max_effort);
-      square += output.effort[i] * output.effort[i];
-      change += (rig.program.state().force[i] - last[i]) * (rig.program.state().force[i] - last[i]);
-      last[i] = rig.program.state().force[i];
-      if (output.mode != Mode::enabled) RC_ASSERT(output.effort[i] == 0.0);
-    }
-    RC_ASSERT(std::sqrt(square) <= rig.program.plan().devices[0].max_force * (1 + 1e-12));
+double norm_of(std::span<const double> values, const DevicePlan& device) {
+  double square = 0;
+  for (std::size_t i = 0; i < device.coordinates; ++i)
+    square += values[device.first_coordinate + i] * values[device.first_coordinate + i];
+  return std::sqrt(square);
+}
+
+void expect_inside_every_limit(const Rig& rig, const TickOutput& output,
+                               const std::vector<double>& last) {
+  const Plan& plan = rig.program.plan();
+  const State& state = rig.program.state();
+  for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+    RC_ASSERT(std::isfinite(output.effort[i]));
+    RC_ASSERT(std::abs(output.effort[i]) <= plan.axes[i].max_effort);
+    if (output.mode != Mode::enabled) RC_ASSERT(output.effort[i] == 0.0);
+  }
+  std::vector<double> change(state.slewed.begin(), state.slewed.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= last[i];
+  for (std::size_t d = 0; d < plan.devices.size(); ++d) {
+    RC_ASSERT(norm_of(state.force, plan.devices[d]) <= plan.devices[d].max_force * (1 + 1e-12));
     if (output.mode == Mode::enabled)
-      RC_ASSERT(std::sqrt(change) <= rig.program.plan().devices[0].max_slew * (1 + 1e-9));
+      RC_ASSERT(norm_of(change, plan.devices[d]) <= plan.devices[d].max_slew * (1 + 1e-9));
+  }
+  for (const PowerLimit& limit : plan.power_limits) {
+    double power = 0;
+    for (std::size_t i = 0; i < plan.devices[limit.device].axes; ++i)
+      power += output.effort[i] * state.qd[i];
+    RC_ASSERT(power <= limit.max_W * (1 + 1e-9));
+  }
+  for (const double heat : state.heat) RC_ASSERT(heat >= 0 && heat <= 1 + 1e-3);
+}
+
+void any_input(build::ProgramSpec spec) {
+  Rig rig(std::move(spec));
+  const bool calm = *rc::gen::arbitrary<bool>();
+  std::vector<double> last(rig.program.plan().coordinates, 0.0);
+  for (int tick = *rc::gen::inRange(1, 60); tick > 0; --tick) {
+    random_tick(rig, calm);
+    const TickOutput output = rig.run();
+    expect_inside_every_limit(rig, output, last);
+    last.assign(rig.program.state().slewed.begin(), rig.program.state().slewed.end());
     if (rig.input.host_fault.code != Fault::none && rig.input.enable)
       RC_ASSERT(output.mode == Mode::fault);
   }
+}
+
+RC_GTEST_PROP(Step, AnyInputGivesAFiniteOutputInsideEveryLimit, ()) {
+  any_input(random_spec());
+}
+
+RC_GTEST_PROP(Step, AnyInputToEverythingAPlanCanNameGivesAFiniteOutputInsideEveryLimit, ()) {
+  any_input(random_full_spec());
 }
 
 RC_GTEST_PROP(Step, EmptySceneGivesExactlyZeroForce, ()) {

@@ -30,7 +30,9 @@ build::ProgramSpec program_spec(const sim::DeviceOptions& device, const LoopOpti
          .modulus_raw = axis.encoder_bits > 0 ? std::ldexp(1.0, axis.encoder_bits) : 0,
          .max_effort = options.max_effort_N,
          .max_velocity = options.max_velocity_m_s,
-         .max_step = options.max_step_m});
+         .max_step = options.max_step_m,
+         .delay_share = options.delay_share,
+         .delay_ticks = options.delay_ticks});
     if (options.stuck_ticks > 0) {
       spec.stuck_watches.push_back({index, options.stuck_ticks, options.stuck_min_effort_N});
     }

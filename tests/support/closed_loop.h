@@ -24,6 +24,8 @@ struct LoopOptions {
   std::uint32_t max_stale_ticks = 3;
   std::uint32_t stuck_ticks = 0;  ///< 0: no watch
   double stuck_min_effort_N = 0.1;
+  std::uint16_t delay_ticks = 0;  ///< latency that the ledger books with: whole ticks
+  double delay_share = 0;         ///< and the rest, as a share of a tick
 };
 
 /// A device of one axis with an encoder so fine that its quantisation is out of the way; no limit

@@ -15,20 +15,47 @@ using Matrix = Eigen::MatrixXd;
 /// strict inequality.
 constexpr double kMargin = 1e-9;
 
-/// What the planes of one device ask of its damping: spring part (T/2) sum k nn', damper part sum b
-/// nn'.
+/// What the planes and travel springs of one device ask of its damping, in joint space: spring part
+/// (T/2) sum k nn', damper part sum b nn'.
 struct Demand {
   Matrix spring, damper;
 };
 
+/// dx/dq of a device whose Jacobian is constant: contact coordinates x axes.
+Matrix jacobian(const control::Plan& plan, const control::DevicePlan& device) {
+  Matrix j = Matrix::Zero(device.coordinates, device.axes);
+  for (const control::CartesianAxis& pair : plan.cartesian_axes) {
+    const int axis = pair.axis - device.first_axis;
+    if (axis >= 0 && axis < device.axes) j(pair.coordinate - device.first_coordinate, axis) = pair.scale;
+  }
+  for (const control::LinearMap& map : plan.linear_maps) {
+    const control::Linkage& linkage = plan.linkages[map.linkage];
+    if (linkage.first_axis != device.first_axis) continue;
+    for (int row = 0; row < device.coordinates; ++row) {
+      for (int axis = 0; axis < device.axes; ++axis) {
+        for (std::size_t i = 0; i < 3; ++i)
+          j(row, axis) += linkage.turn[static_cast<std::size_t>(row)][i] *
+                          map.columns[i][static_cast<std::size_t>(axis)];
+      }
+    }
+  }
+  return j;
+}
+
 Demand demand(const control::Plan& plan, const control::DevicePlan& device) {
-  const Eigen::Index n = device.coordinates;
-  Demand sum{Matrix::Zero(n, n), Matrix::Zero(n, n)};
+  const Matrix j = jacobian(plan, device);
+  Demand sum{Matrix::Zero(device.axes, device.axes), Matrix::Zero(device.axes, device.axes)};
   for (const control::PlaneContact& plane : plan.planes) {
     if (plane.first_coordinate != device.first_coordinate) continue;
-    const Eigen::Map<const Eigen::VectorXd> normal(plane.normal.data(), n);
+    const Eigen::Map<const Eigen::VectorXd> in_world(plane.normal.data(), device.coordinates);
+    const Eigen::VectorXd normal = j.transpose() * in_world;
     sum.spring += 0.5 * plan.period_s * plane.stiffness * normal * normal.transpose();
     sum.damper += plane.damping * normal * normal.transpose();
+  }
+  for (const control::TravelPlan& travel : plan.travels) {
+    const int axis = travel.axis - device.first_axis;
+    if (axis >= 0 && axis < device.axes)
+      sum.spring(axis, axis) += 0.5 * plan.period_s * travel.stiffness;
   }
   return sum;
 }
@@ -77,6 +104,11 @@ std::string margin(const PassiveAnswer& answer, double period_s) {
 }
 
 std::string missing_premise(const control::DevicePlan& device, const DeviceAssumption& assumed) {
+  if (!assumed.obstacles.empty()) {
+    std::string text = assumed.obstacles.front();
+    for (std::size_t i = 1; i < assumed.obstacles.size(); ++i) text += "; " + assumed.obstacles[i];
+    return text;
+  }
   if (assumed.min_damping.size() != device.axes)
     return "no `model` with a damping for every axis: nothing can be proved";
   for (const double damping : assumed.min_damping) {

@@ -1,9 +1,12 @@
 // Is the compiled scene passive on these devices? The one proof known so far is the closed form for
-// planes rendered directly, at zero latency, on Cartesian axes; per device the matrix inequality
+// planes rendered directly, at zero latency, on devices whose Jacobian is constant; per device the
+// matrix inequality
 //
-//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  <  Delta_D
+//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  +  (T/2) sum_j k_j e_j e_j'  <  Delta_D
 //
-// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box. For one
+// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box, n_i the plane's
+// normal in joint coordinates, J' n, and e_j the axes with a spring of stiffness k_j at the ends of
+// their travel (both ends are one convex potential with second derivative up to k_j). For one
 // axis it is Colgate's k T/2 + b < b_device. Every plane is summed as if all were touched at once.
 //
 // Proof. For one plane let p_k be the depth, e = p_k - p_{k-1}, d = p_{k+1} - p_k, P = max(p, 0);
@@ -35,7 +38,8 @@ namespace hapticd::check {
 struct DeviceAssumption {
   std::string name;
   double latency_s = 0;
-  std::vector<double> min_damping;  ///< N s/m per axis; empty: no model given
+  std::vector<double> min_damping;     ///< N s/m or N m s/rad per axis; empty: no model given
+  std::vector<std::string> obstacles{};  ///< why the closed form does not hold for this device
 };
 
 /// The answer for one device.

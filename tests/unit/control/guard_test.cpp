@@ -130,7 +130,7 @@ TEST(Guard, MissingSamplesBeyondTheLimitAreAFault) {
   Rig rig(wall_spec(1000));
   rig.enable_at(-0.005);
   rig.samples[0].freshness = Freshness::missing;
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rig.run().effort[0], 5.0, 1e-12) << "held";
+  for (int i = 0; i < 3; ++i) EXPECT_GT(rig.run().effort[0], 1.0) << "held, then fading";
   const TickOutput output = rig.run();
   EXPECT_EQ(output.fault.code, Fault::sample_missing);
   EXPECT_EQ(output.effort[0], 0.0);

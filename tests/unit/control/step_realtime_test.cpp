@@ -10,13 +10,15 @@
 #include <functional>
 
 #include "tests/support/heap_guard.h"
-#include "tests/support/program_fixture.h"
+#include "tests/support/full_program.h"
 
 namespace hapticd::control {
 namespace {
 
 /// Every path of the tick: rest, contact, limits, missed samples, a fault and back.
 void eventful_run(test::Rig& rig) {
+  for (Aux& aux : rig.aux) aux.digital = 1;
+  for (AxisSample& sample : rig.samples) sample.homed = true;
   rig.enable_at(-0.002);
   for (int i = 0; i < 200; ++i) rig.at(-0.02 + 1e-4 * i);
   rig.samples[0].freshness = Freshness::missing;
@@ -30,8 +32,8 @@ void eventful_run(test::Rig& rig) {
 }
 
 build::ProgramSpec busy_spec() {
-  auto spec = test::spec_of(3);
-  spec.planes = {test::wall(1000, 1, 3), test::wall(1e6, 0, 3)};
+  auto spec = test::full_spec();
+  spec.planes.push_back(test::wall(1e6, 0, 3));
   spec.stuck_watches = {{.axis = 0, .ticks = 2, .min_effort = 0.1}};
   return spec;
 }
