@@ -1,11 +1,14 @@
 // What the parts of compile() share: the config, what is made of it so far, and the errors.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "config/axis_values.h"
 #include "config/compile.h"
+#include "config/contact_frame.h"
 #include "config/effective_guard.h"
 
 namespace hapticd::config {
@@ -27,11 +30,21 @@ class Compilation {
   const Document& document_;
 };
 
-/// Device `index` with the path that errors name it by.
+/// One device with all that its parts are compiled from.
 struct DevicePlace {
   const Device& device;
-  std::string path;  ///< "devices[0]"
+  std::uint16_t index = 0;
+  std::string path;  ///< that errors name it by: "devices[0]"
   EffectiveGuard guard;
+  ContactFrame frame;
+  std::vector<AxisValues> axes;
+  std::uint16_t first_axis = 0;
+  std::uint16_t first_coordinate = 0;
+
+  std::uint16_t axis(std::size_t own) const { return static_cast<std::uint16_t>(first_axis + own); }
+  std::uint16_t coordinate(std::size_t own) const {
+    return static_cast<std::uint16_t>(first_coordinate + own);
+  }
 };
 
 /// "devices" and 3: "devices[3]".
@@ -43,9 +56,20 @@ std::string unknown_name(std::string_view what, const std::string& name,
 // In this order; the devices have to be sound for what follows.
 void check_capacities(Compilation& compilation);
 void check_names(Compilation& compilation);
+/// Of the device that comes after those that are in `compilation.spec`.
+DevicePlace device_place(Compilation& compilation, std::size_t index);
+// Each adds one part of the device to `compilation.spec`.
 void compile_device(Compilation& compilation, const DevicePlace& place);
+void compile_kinematics(Compilation& compilation, const DevicePlace& place);
+void compile_axes(Compilation& compilation, const DevicePlace& place);
+void compile_observers(Compilation& compilation, const DevicePlace& place);
+void compile_guard(Compilation& compilation, const DevicePlace& place);
 void compile_simulated(Compilation& compilation, const DevicePlace& place);
-void compile_scene(Compilation& compilation);
+/// Refuses a cutoff of half the rate or more, at `path`.cutoff_Hz.
+void check_cutoff(Compilation& compilation, const std::string& path, double cutoff_Hz);
+void compile_scene(Compilation& compilation, const std::vector<DevicePlace>& places);
+/// What the stability check may assume of each device, and what keeps it from a proof.
+void compile_assumptions(Compilation& compilation, const std::vector<DevicePlace>& places);
 /// Relative paths are relative to the config's directory.
 void resolve_paths(Config& config, const std::string& config_path);
 void check_paths(Compilation& compilation);

@@ -57,13 +57,19 @@ void compile_all(Compilation& compilation) {
   check_paths(compilation);
   const Config& config = compilation.config;
   compilation.spec.period_s = 1 / config.loop.rate_Hz;
+  std::vector<DevicePlace> places;
   for (std::size_t i = 0; i < config.devices.size(); ++i) {
-    const Device& device = config.devices[i];
-    const DevicePlace place{device, indexed("devices", i), effective_guard(config.guard, device)};
+    places.push_back(device_place(compilation, i));
+    const DevicePlace& place = places.back();
     compile_device(compilation, place);
+    compile_kinematics(compilation, place);
+    compile_axes(compilation, place);
+    compile_observers(compilation, place);
+    compile_guard(compilation, place);
     compile_simulated(compilation, place);
   }
-  if (compilation.errors.empty()) compile_scene(compilation);
+  if (compilation.errors.empty()) compile_scene(compilation, places);
+  compile_assumptions(compilation, places);
 }
 
 }  // namespace
@@ -109,7 +115,7 @@ void check_capacities(Compilation& compilation) {
     axes += own;
   }
   check("devices", axes, kMaxAxes, "axes over all devices");
-  static_assert(kMaxCoordinates >= kMaxAxes, "Cartesian contacts have as many coordinates as axes");
+  static_assert(kMaxCoordinates >= kMaxDevices * kMaxContactCoordinates);
 }
 
 void check_names(Compilation& compilation) {

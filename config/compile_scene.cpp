@@ -15,7 +15,8 @@ constexpr double kLeastShare = 1e-9;
 
 class SceneCompiler {
  public:
-  explicit SceneCompiler(Compilation& compilation) : compilation_(compilation) {
+  SceneCompiler(Compilation& compilation, const std::vector<DevicePlace>& places)
+      : compilation_(compilation), places_(places) {
     for (const Device& device : compilation.config.devices) device_names_.push_back(device.name);
   }
 
@@ -53,20 +54,19 @@ class SceneCompiler {
     return indices;
   }
 
-  /// In world directions that the contact does not have it stays at 0, so they drop out of n.x.
+  /// In world directions that the contact does not have it stays where its device stands.
   void add_contact(const Plane& plane, const std::array<double, 3>& unit, std::size_t device,
                    const std::string& path) {
-    const control::DevicePlan& contact = compilation_.spec.devices[device];
-    const std::vector<Direction>& directions =
-        compilation_.config.devices[device].kinematics.cartesian.directions;
-    control::PlaneContact made{.first_coordinate = contact.first_coordinate,
-                               .coordinates = contact.coordinates,
-                               .offset = plane.offset_m,
+    const DevicePlace& place = places_[device];
+    const std::vector<std::size_t>& directions = place.frame.directions;
+    control::PlaneContact made{.first_coordinate = place.first_coordinate,
+                               .coordinates = static_cast<std::uint16_t>(directions.size()),
+                               .offset = plane.offset_m - fixed_part(place.frame, unit),
                                .stiffness = plane.stiffness_N_m,
                                .damping = plane.damping_Ns_m};
     bool felt = false;
     for (std::size_t i = 0; i < directions.size(); ++i) {
-      made.normal[i] = unit[static_cast<std::size_t>(directions[i])];
+      made.normal[i] = unit[directions[i]];
       felt = felt || std::abs(made.normal[i]) > kLeastShare;
     }
     if (!felt) {
@@ -78,21 +78,34 @@ class SceneCompiler {
     compilation_.spec.planes.push_back(made);
   }
 
-  static std::string words(const std::vector<Direction>& directions) {
+  /// n.x of the directions that the contact does not have [m].
+  static double fixed_part(const ContactFrame& frame, const std::array<double, 3>& unit) {
+    double sum = 0;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+      const bool moves =
+          std::find(frame.directions.begin(), frame.directions.end(), i) != frame.directions.end();
+      if (!moves) sum += unit[i] * frame.position[i];
+    }
+    return sum;
+  }
+
+  static std::string words(const std::vector<std::size_t>& directions) {
     std::string text;
-    for (const Direction direction : directions)
-      text += (text.empty() ? "" : ", ") + std::string(word_of(direction));
+    for (const std::size_t direction : directions) {
+      text += (text.empty() ? "" : ", ") + std::string(word_of(static_cast<Direction>(direction)));
+    }
     return text;
   }
 
   Compilation& compilation_;
+  const std::vector<DevicePlace>& places_;
   std::vector<std::string> device_names_;
 };
 
 }  // namespace
 
-void compile_scene(Compilation& compilation) {
-  SceneCompiler compiler(compilation);
+void compile_scene(Compilation& compilation, const std::vector<DevicePlace>& places) {
+  SceneCompiler compiler(compilation, places);
   for (std::size_t i = 0; i < compilation.config.scene.size(); ++i) {
     std::visit(
         [&]<class Object>(const Object& object) {

@@ -37,15 +37,24 @@ struct Words<EnableWhen> {
 };
 template <>
 struct Words<AxisKind> {
-  static constexpr std::array<std::string_view, 1> list{"linear"};
+  static constexpr std::array<std::string_view, 2> list{"linear", "rotary"};
 };
 template <>
 struct Words<Estimator> {
-  static constexpr std::array<std::string_view, 1> list{"backward_difference"};
+  static constexpr std::array<std::string_view, 5> list{
+      "backward_difference", "low_pass", "least_squares", "foaw", "alpha_beta_gamma"};
 };
 template <>
 struct Words<ObserverMode> {
-  static constexpr std::array<std::string_view, 1> list{"off"};
+  static constexpr std::array<std::string_view, 4> list{"off", "model", "sensor", "classic"};
+};
+template <>
+struct Words<HomingMethod> {
+  static constexpr std::array<std::string_view, 4> list{"none", "device", "index", "hard_stop"};
+};
+template <>
+struct Words<InputRole> {
+  static constexpr std::array<std::string_view, 2> list{"dead_man", "estop"};
 };
 template <>
 struct Words<Direction> {
@@ -71,10 +80,18 @@ constexpr std::string_view word_of(E value) {
   return Words<E>::list[static_cast<std::size_t>(value)];
 }
 
-/// The one key of a scene entry that holds a T.
+/// The one key of a map that holds a T as one of several kinds.
 template <class T>
 inline constexpr const char* kKindOf = nullptr;
 template <>
 inline constexpr const char* kKindOf<Plane> = "plane";
+template <>
+inline constexpr const char* kKindOf<Cartesian> = "cartesian";
+template <>
+inline constexpr const char* kKindOf<FiveBar> = "five_bar";
+template <>
+inline constexpr const char* kKindOf<Delta> = "delta";
+template <>
+inline constexpr const char* kKindOf<Serial> = "serial";
 
 }  // namespace hapticd::config

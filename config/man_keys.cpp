@@ -73,6 +73,10 @@ std::string default_text(const T& value) {
     return std::string(word_of(value));
   } else if constexpr (kIsVector<T>) {
     return "empty";
+  } else if constexpr (kIsArray<T>) {
+    std::string text;
+    for (const auto& item : value) text += (text.empty() ? "" : ", ") + default_text(item);
+    return text;
   } else {
     return "as its keys say";
   }

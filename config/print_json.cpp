@@ -15,30 +15,52 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json axis_json(const Axis& axis, const control::AxisPlan& plan, Direction direction) {
-  Json model = nullptr;
-  if (axis.model) {
-    model = {{"mass_kg", axis.model->mass_kg},
-             {"damping_Ns_m", axis.model->damping_Ns_m},
-             {"mass_uncertainty", axis.model->mass_uncertainty},
-             {"damping_uncertainty", axis.model->damping_uncertainty}};
-  }
+/// "max_force_N" or "max_torque_Nm": the same figure in the axis' own units.
+const char* key(bool rotary, const char* linear_key, const char* rotary_key) {
+  return rotary ? rotary_key : linear_key;
+}
+
+Json model_json(const std::optional<AxisModel>& model, bool rotary) {
+  if (!model) return nullptr;
+  return {{key(rotary, "mass_kg", "inertia_kgm2"),
+           or_null(rotary ? model->inertia_kgm2 : model->mass_kg)},
+          {key(rotary, "damping_Ns_m", "damping_Nms_rad"),
+           or_null(rotary ? model->damping_Nms_rad : model->damping_Ns_m)},
+          {"mass_uncertainty", model->mass_uncertainty},
+          {"damping_uncertainty", model->damping_uncertainty}};
+}
+
+/// `direction`: of a Cartesian device, else null.
+Json axis_json(const Axis& axis, const control::AxisPlan& plan, const Json& direction) {
+  const bool rotary = axis.kind == AxisKind::rotary;
   return {{"name", axis.name},
-          {"direction", word_of(direction)},
-          {"m_per_count", plan.unit_per_raw},
-          {"offset_m", plan.offset},
+          {"kind", word_of(axis.kind)},
+          {"direction", direction},
+          {key(rotary, "m_per_count", "rad_per_count"), plan.unit_per_raw},
+          {key(rotary, "offset_m", "offset_rad"), plan.offset},
           {"modulus_counts", plan.modulus_raw},
-          {"max_force_N", plan.max_effort},
+          {key(rotary, "max_force_N", "max_torque_Nm"), plan.max_effort},
           {"stuck_s", or_null(axis.encoder.stuck_s)},
-          {"model", model}};
+          {"velocity", word_of(axis.velocity.estimator)},
+          {"observer", word_of(axis.observer.mode)},
+          {"homing", word_of(axis.homing.by)},
+          {"model", model_json(axis.model, rotary)}};
 }
 
 Json guard_json(const EffectiveGuard& guard) {
   return {{"max_force_N", guard.max_force_N},
           {"max_velocity_m_s", guard.max_velocity_m_s},
+          {"max_velocity_rad_s", guard.max_velocity_rad_s},
           {"max_slew_N_s", guard.max_slew_N_s},
           {"ramp_s", guard.ramp_s},
-          {"max_stale_ticks", guard.max_stale_ticks}};
+          {"max_stale_ticks", guard.max_stale_ticks},
+          {"max_power_W", or_null(guard.max_power_W)}};
+}
+
+Json assumed_json(const check::DeviceAssumption& assumed, bool rotary) {
+  return {{"latency_s", assumed.latency_s},
+          {key(rotary, "min_damping_Ns_m", "min_damping_Nms_rad"), assumed.min_damping},
+          {"obstacles", assumed.obstacles}};
 }
 
 Json device_json(const Compiled& compiled, std::size_t index) {
@@ -47,17 +69,19 @@ Json device_json(const Compiled& compiled, std::size_t index) {
   const control::Plan& plan = compiled.program->plan();
   const std::size_t first_axis = plan.devices[index].first_axis;
   Json axes = Json::array();
+  const auto* cartesian = std::get_if<Cartesian>(&device.kinematics);
   for (std::size_t i = 0; i < device.axes.size(); ++i) {
-    axes.push_back(axis_json(device.axes[i], plan.axes[first_axis + i],
-                             device.kinematics.cartesian.directions[i]));
+    const Json direction = cartesian ? Json(word_of(cartesian->directions[i])) : Json(nullptr);
+    axes.push_back(axis_json(device.axes[i], plan.axes[first_axis + i], direction));
   }
-  const check::DeviceAssumption& assumed = compiled.assumed[index];
-  return {
-      {"name", device.name},
-      {"driver", word_of(device.driver)},
-      {"axes", axes},
-      {"guard", guard_json(effective_guard(config.guard, device))},
-      {"assumed", {{"latency_s", assumed.latency_s}, {"min_damping_Ns_m", assumed.min_damping}}}};
+  const auto kind = [](const auto& of) { return kKindOf<std::decay_t<decltype(of)>>; };
+  const bool rotary = device.axes.front().kind == AxisKind::rotary;
+  return {{"name", device.name},
+          {"driver", word_of(device.driver)},
+          {"kinematics", std::visit(kind, device.kinematics)},
+          {"axes", axes},
+          {"guard", guard_json(effective_guard(config.guard, device))},
+          {"assumed", assumed_json(compiled.assumed[index], rotary)}};
 }
 
 Json object_json(const Config& config, const Plane& plane) {

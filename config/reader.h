@@ -116,8 +116,7 @@ void read_variant(Reading& reading, const Node& node, const std::string& path, T
   std::vector<std::string> kinds;
   for_each_alternative<T>([&]<class A>(A) { kinds.emplace_back(kKindOf<A>); });
   if (node.kind != NodeKind::map || node.items.size() != 1) {
-    reading.refuse_value(node, path,
-                         "a map with one key, the kind of the object, such as '" + kinds[0] + "'");
+    reading.refuse_value(node, path, "a map with one key, the kind, such as '" + kinds[0] + "'");
     return;
   }
   Node kind{.kind = NodeKind::scalar, .mark = node.keys[0].mark, .text = node.keys[0].text};

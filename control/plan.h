@@ -31,7 +31,7 @@ struct AxisPlan {
   double max_velocity = 0;  ///< m/s or rad/s, > 0: beyond it a fault
   double max_step = 0;      ///< m or rad in one tick, >= max_velocity * period: beyond it a jump
   double min_damping =
-      0;  ///< N s/m or N m s/rad, >= 0: what the device surely dissipates by itself
+      0;  ///< N s/m or N m s/rad, >= 0: what the axis surely dissipates, friction compensation taken off
   double delay_share = 0;  ///< t / T in [0, 1): the fraction of a tick in the device's latency
   std::uint16_t delay_ticks = 0;  ///< n: the whole ticks in it, at most kMaxDelayTicks
 };

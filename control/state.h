@@ -32,8 +32,8 @@ struct AxisState {
 
 struct State {
   std::span<AxisState> axes;
-  std::span<LedgerState> ledger;  ///< per axis
-  std::span<HomingState> homings;       ///< beside the plan's arrays, entry by entry
+  std::span<LedgerState> ledger;   ///< per axis
+  std::span<HomingState> homings;  ///< beside the plan's arrays, entry by entry
   std::span<LowPassState> low_passes;
   std::span<WindowState> least_squares;
   std::span<WindowState> foaws;
@@ -64,7 +64,7 @@ struct State {
   std::span<double> force;             ///< N on the contacts, after the guard
   std::span<double> work;              ///< J, per device: done by its motors since the start
   std::span<double> reserve;           ///< J, per device: of its passivity controller
-  std::span<double> gain;  ///< 0 to 1, per device: of its passivity controller
+  std::span<double> gain;              ///< 0 to 1, per device: of its passivity controller
   std::span<double> fade;  ///< 0 to 1, per device: what takes force out at once, of all reasons
   std::span<const double> recorded;
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <vector>
 
 #include "daemon/ctl_client.h"
 #include "daemon/options.h"
@@ -19,9 +20,20 @@ std::string text_at(const Json& json, const char* key) {
   return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
 }
 
+/// What stands between the loop and forces, line by line.
+std::vector<std::string> waits(const Json& status) {
+  std::vector<std::string> lines;
+  if (!status.contains("waiting_for") || !status["waiting_for"].is_array()) return lines;
+  for (const Json& line : status["waiting_for"]) {
+    if (line.is_string()) lines.push_back(line.get<std::string>());
+  }
+  return lines;
+}
+
 std::string status_text(const Json& status) {
   std::string text = "state           " + text_at(status, "state") + "\n";
   if (status.value("enabling", false)) text += "                forces are asked for, not yet on\n";
+  for (const std::string& line : waits(status)) text += "waiting for     " + line + "\n";
   if (status.contains("fault") && status["fault"].is_object()) {
     text += "fault           " + text_at(status["fault"], "text") + "\n";
   }
@@ -32,10 +44,20 @@ std::string status_text(const Json& status) {
   return text + text_at(status, "table");
 }
 
-/// Forces are on when the power stages are, which may take a while; a fault ends the wait at once.
+std::string not_yet(const Json& status) {
+  std::string text =
+      "forces are not on yet, hapticd goes on waiting (`hapticctl disable` ends that):";
+  const std::vector<std::string> lines = waits(status);
+  if (lines.empty()) text += "\n  for the devices' power stages; ask `hapticctl status`";
+  for (const std::string& line : lines) text += "\n  " + line;
+  return text;
+}
+
+/// Forces are on when the power stages are, which may take a while. A search for references ends by
+/// itself, found or in a fault, which ends the wait at once.
 Result<Json> await_enabled(CtlClient& client) {
   constexpr auto kPatience = 5s;
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  auto end = std::chrono::steady_clock::now() + kPatience;
   for (;;) {
     auto status = client.ask({Verb::status, false});
     if (!status) return status;
@@ -51,11 +73,8 @@ Result<Json> await_enabled(CtlClient& client) {
                   "forces are not on: " + (fault ? text_at((*status)["fault"], "text")
                                                  : "state " + text_at(*status, "state")));
     }
-    if (std::chrono::steady_clock::now() > end) {
-      return fail(ExitCode::try_again,
-                  "forces are not on yet: hapticd waits for the devices' power stages; ask "
-                  "`hapticctl status`");
-    }
+    if (answer["state"] == "homing") end = std::chrono::steady_clock::now() + kPatience;
+    if (std::chrono::steady_clock::now() > end) return fail(ExitCode::try_again, not_yet(*status));
     std::this_thread::sleep_for(10ms);
   }
 }

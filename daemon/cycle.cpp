@@ -50,6 +50,7 @@ void Cycle::run(build::Program& program, const CycleInput& input, Now now,
              .step_ns = between(collected_ns, stepped_ns),
              .command_ns = between(stepped_ns, now())};
   if (ring != nullptr) record(program, input.time.start_ns, *ring);
+  ++sequence_;  // counts lost records too, so that a gap shows them
   last_ = 1 - last_;
 }
 
@@ -107,7 +108,8 @@ void Cycle::fill_tick(control::Mode mode, const CycleInput& input) noexcept {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     armed_ = armed_ && aux_[i].armed;
     if (tick_.host_fault.code != Fault::none) continue;
-    const bool dropped_out = mode == control::Mode::enabled && !aux_[i].armed;
+    const bool forces = mode == control::Mode::enabled || mode == control::Mode::homing;
+    const bool dropped_out = forces && !aux_[i].armed;
     if (!aux_[i].faulted && !dropped_out) continue;
     tick_.host_fault = {.code = aux_[i].faulted ? Fault::device : Fault::disarmed,
                         .device = static_cast<std::uint16_t>(i)};
@@ -143,7 +145,6 @@ void Cycle::record(const build::Program& program, std::int64_t start_ns,
                           sequence_, slot);
     ring.commit();
   }
-  ++sequence_;  // counts lost records too, so that a gap shows them
 }
 
 void Cycle::stop() noexcept {

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "control/recorded.h"
 #include "daemon/device_factory.h"
 #include "daemon/recording.h"
 
@@ -23,6 +24,20 @@ TelemetryOptions telemetry_options(const config::Telemetry& telemetry) {
   options.flight_s = telemetry.flight_s;
   options.record_path = telemetry.record.value_or("");
   return options;
+}
+
+/// Of any plan for the devices of this one: a reload may add what is recorded too.
+std::size_t largest_record_bytes(const control::Plan& plan) {
+  const std::size_t axes = plan.axes.size(), devices = plan.devices.size();
+  std::size_t bytes =
+      sizeof(control::RecordHeader) + axes * (3 * sizeof(double) + 2) + devices * sizeof(Aux);
+  for (const control::RecordedField& field : control::kRecorded) {
+    const std::size_t count = field.per == control::Per::axis     ? axes
+                              : field.per == control::Per::device ? devices
+                                                                  : plan.coordinates;
+    bytes += count * sizeof(double);
+  }
+  return (bytes + 7) / 8 * 8;
 }
 
 bool same(const config::Telemetry& a, const config::Telemetry& b) {
@@ -48,7 +63,8 @@ Engine::Engine(config::Compiled& compiled, TelemetryEvents events)
       header_(header_of(*program_, compiled.document)),
       servo_options_(servo_options(compiled.document.config.loop)),
       devices_(make_devices(compiled)) {
-  const std::size_t slot_bytes = program_->plan().record.bytes;
+  events_.record = [this](const std::byte* record) { live_.add(record); };
+  const std::size_t slot_bytes = largest_record_bytes(program_->plan());
   ring_storage_.resize(kRingSlots * slot_bytes / sizeof(std::uint64_t));
   shared_ =
       std::make_unique<ServoShared>(std::as_writable_bytes(std::span(ring_storage_)), slot_bytes);
@@ -98,6 +114,7 @@ void Engine::start() {
 }
 
 void Engine::start_telemetry() {
+  live_.begin(program_->plan().record);
   telemetry_ = std::make_unique<Telemetry>(telemetry_options(telemetry_config_), header_,
                                            shared_->records, events_);
   auto started = telemetry_->start();
@@ -126,24 +143,33 @@ bool Engine::swap(config::Compiled& fresh) {
   if (retiring_ || !shared_->plans.offer(fresh.program.get())) return false;
   retiring_ = std::exchange(program_, std::move(fresh.program));
   header_ = header_of(*program_, fresh.document);
-  const config::Telemetry& wanted = fresh.document.config.telemetry;
-  if (telemetry_ && same(telemetry_config_, wanted)) {
+  const config::Telemetry before =
+      std::exchange(telemetry_config_, fresh.document.config.telemetry);
+  if (retiring_->plan().record != program_->plan().record) return true;  // once it is adopted
+  if (telemetry_ && same(telemetry_config_, before)) {
     telemetry_->set_header(header_);
-    return true;
+  } else {
+    restart_telemetry();
   }
-  if (telemetry_) {
-    telemetry_->stop();
-    lost_before_ += telemetry_->lost();
-  }
-  telemetry_config_ = wanted;
-  start_telemetry();
   return true;
 }
 
 bool Engine::swapped() {
   if (!retiring_ || shared_->plans.collect() == nullptr) return false;
   retiring_.reset();
+  if (shared_->records_held.load(std::memory_order_relaxed)) {
+    restart_telemetry();  // the one that knew the old records has drained them
+    shared_->records_held.store(false, std::memory_order_release);
+  }
   return true;
+}
+
+void Engine::restart_telemetry() {
+  if (telemetry_) {
+    telemetry_->stop();
+    lost_before_ += telemetry_->lost();
+  }
+  start_telemetry();
 }
 
 std::uint64_t Engine::records_lost() const noexcept {

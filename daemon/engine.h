@@ -9,6 +9,7 @@
 
 #include "config/compile.h"
 #include "control/core/result.h"
+#include "daemon/live.h"
 #include "daemon/lock_file.h"
 #include "daemon/realtime.h"
 #include "daemon/servo_shared.h"
@@ -47,15 +48,19 @@ class Engine {
   const drivers::Device& device(std::size_t i) const noexcept { return *devices_[i]; }
   const std::vector<drivers::DeviceInfo>& devices() const noexcept { return infos_; }
   std::uint64_t records_lost() const noexcept;
+  /// What the newest record says.
+  LiveView live() const { return live_.view(); }
   bool offered() const noexcept { return retiring_ != nullptr; }
 
  private:
   Result<void> connect_one(std::size_t i, const std::string& name);
   void disconnect_all() noexcept;
   void start_telemetry();
+  void restart_telemetry();
 
   std::unique_ptr<build::Program> program_, retiring_;
   config::Telemetry telemetry_config_;
+  Live live_;
   TelemetryEvents events_;
   RecordingHeader header_;
   ServoOptions servo_options_;

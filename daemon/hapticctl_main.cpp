@@ -9,6 +9,7 @@
 #include "daemon/ctl_check.h"
 #include "daemon/ctl_simulate.h"
 #include "daemon/ctl_verbs.h"
+#include "daemon/ctl_why.h"
 
 namespace {
 
@@ -76,6 +77,10 @@ void add_file_verbs(CommandLine& line) {
       ->add_option("-o,--output", line.output,
                    "where to (default: FILE.csv; - for standard output)")
       ->type_name("OUT");
+
+  CLI::App* why = add_verb(line, "why", "tell what led to the last fault of a recording",
+                           [&line] { return daemon::run_why(line.input, line.json); });
+  why->add_option("FILE", line.input, "the recording, such as a flight recording")->required();
 }
 
 void describe(CommandLine& line) {

@@ -5,24 +5,15 @@
 namespace hapticd::daemon {
 
 State next_state(State now, const Seen& seen) noexcept {
-  switch (now) {
-    case State::off:
-      return seen.starting ? State::connecting : State::off;
-    case State::connecting:
-      if (!seen.starting) return State::off;
-      return seen.connected ? State::homing : State::connecting;
-    case State::homing:
-      if (!seen.connected) return State::off;
-      return seen.homed && seen.looping ? State::ready : State::homing;
-    case State::ready:
-    case State::enabled:
-    case State::fault:
-      break;
+  if (!seen.looping) {
+    const bool starting = seen.starting && (now == State::off || now == State::connecting);
+    return starting ? State::connecting : State::off;
   }
-  if (!seen.looping) return State::off;
   switch (seen.mode) {
     case control::Mode::idle:
       return State::ready;
+    case control::Mode::homing:
+      return State::homing;
     case control::Mode::enabled:
       return State::enabled;
     case control::Mode::fault:
@@ -31,18 +22,22 @@ State next_state(State now, const Seen& seen) noexcept {
   return State::fault;
 }
 
-std::string_view fault_unit(const FaultReport& fault) noexcept {
-  const std::string_view unit = entry(fault.code).unit;
+std::string_view fault_unit(Fault code, bool rotary) noexcept {
+  const std::string_view unit = entry(code).unit;
   if (!unit.empty()) return unit;
-  // "" in the table: the axis' own unit, or no figure at all. Axes are linear so far.
-  switch (fault.code) {
+  switch (code) {  // "" in the table: the axis' own unit, or no figure at all
     case Fault::velocity:
-      return "m/s";
+      return rotary ? "rad/s" : "m/s";
     case Fault::encoder_jump:
-      return "m";
+    case Fault::travel:
+      return rotary ? "rad" : "m";
     default:
       return "";
   }
+}
+
+std::string_view fault_unit(const FaultReport& fault, const build::ProgramSpec& spec) noexcept {
+  return fault_unit(fault.code, fault.axis < spec.rotary.size() && spec.rotary[fault.axis]);
 }
 
 std::string blamed(const FaultReport& fault, const build::ProgramSpec& names) {
@@ -56,7 +51,7 @@ std::string describe_fault(const FaultReport& fault, const build::ProgramSpec& n
   const FaultEntry& row = entry(fault.code);
   std::string text = fmt::format("{}: {}", row.name, row.meaning);
   if (const std::string who = blamed(fault, names); !who.empty()) text += fmt::format("; {}", who);
-  if (const auto unit = fault_unit(fault); !unit.empty()) {
+  if (const auto unit = fault_unit(fault, names); !unit.empty()) {
     text +=
         fmt::format(": found {:.4g} {}, allowed {:.4g} {}", fault.found, unit, fault.allowed, unit);
   }

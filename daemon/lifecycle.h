@@ -1,8 +1,8 @@
 // The daemon's states and what leads from one to the next. Pure, so that every way is tested
 // without a thread.
 //
-//   off -> connecting -> homing -> ready <-> enabled -> fault -> (ready | enabled), off from
-//   anywhere
+//   off -> connecting -> ready <-> (homing ->) enabled, fault from each of the last three,
+//   out of it to ready or on; off from anywhere
 #pragma once
 #include <array>
 #include <cstddef>
@@ -23,17 +23,15 @@ constexpr std::string_view name(State state) {
   return kStateNames[static_cast<std::size_t>(state)];
 }
 
-/// What the supervisor sees of the world.
+/// What the supervisor sees of the world. `ready` does not mean that every axis knows where it is:
+/// axes whose reference can be found under power are homed on the way to `enabled`.
 struct Seen {
-  bool starting = false;   ///< devices are being connected
-  bool connected = false;  ///< all devices answered
-  bool homed = false;      ///< no axis still looks for its zero
-  bool looping = false;    ///< the servo thread runs
+  bool starting = false;  ///< devices are being connected
+  bool looping = false;   ///< the servo thread runs
   control::Mode mode = control::Mode::idle;
 };
 
-/// The state that follows from `seen`. Start-up is passed through state by state, so that each is
-/// told once; a running loop then says itself where it is.
+/// The state that follows from `seen`. A running loop says itself where it is.
 State next_state(State now, const Seen& seen) noexcept;
 
 /// A fault for people: meaning, axis or device by name, figures with units, what to do.
@@ -41,8 +39,9 @@ State next_state(State now, const Seen& seen) noexcept;
 std::string describe_fault(const FaultReport& fault, const build::ProgramSpec& names,
                            std::string_view device_text = {});
 
-/// Unit of FaultReport::found; "" where the fault has no figure.
-std::string_view fault_unit(const FaultReport& fault) noexcept;
+/// Unit of FaultReport::found, for an axis that is rotary or not; "" where the fault has no figure.
+std::string_view fault_unit(Fault code, bool rotary) noexcept;
+std::string_view fault_unit(const FaultReport& fault, const build::ProgramSpec& spec) noexcept;
 
 /// "left.x", "left", or "" where nobody is to blame.
 std::string blamed(const FaultReport& fault, const build::ProgramSpec& names);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace hapticd::daemon {
@@ -33,19 +34,37 @@ void compare_loop(const config::Loop& a, const config::Loop& b, Differences& fou
 void compare_axis(const config::Axis& a, const config::Axis& b, const std::string& key,
                   Differences& found) {
   config::Encoder encoder = b.encoder;
-  encoder.stuck_s = a.encoder.stuck_s;  // a watch of the guard, not a property of the axis
+  encoder.stuck_s = a.encoder.stuck_s;     // a watch of the guard, not a property of the axis
+  config::Actuator actuator = b.actuator;  // and so is the motor's temperature
+  actuator.continuous_force_N = a.actuator.continuous_force_N;
+  actuator.continuous_torque_Nm = a.actuator.continuous_torque_Nm;
+  actuator.thermal_time_s = a.actuator.thermal_time_s;
   found.compare(a.name == b.name, key + ".name");
   found.compare(a.kind == b.kind, key + ".kind");
   found.compare(a.encoder == encoder, key + ".encoder");
-  found.compare(a.actuator == b.actuator, key + ".actuator");
+  found.compare(a.actuator == actuator, key + ".actuator");
+  found.compare(a.homing == b.homing, key + ".homing");
+}
+
+bool same_stops(const std::optional<sim::StopOptions>& a,
+                const std::optional<sim::StopOptions>& b) {
+  if (!a || !b) return !a && !b;
+  return a->min_m == b->min_m && a->max_m == b->max_m;
 }
 
 bool same_plant(const sim::AxisOptions& a, const sim::AxisOptions& b) {
   const auto all = [](const sim::AxisOptions& o) {
     return std::tie(o.mass_kg, o.damping_Ns_m, o.coulomb_N, o.delay_s, o.position_m, o.counts_per_m,
-                    o.encoder_bits, o.noise_counts, o.dac_step_N, o.max_effort_N);
+                    o.encoder_bits, o.noise_counts, o.dac_step_N, o.max_effort_N, o.relative,
+                    o.index_m, o.homed_at_s);
   };
-  return all(a) == all(b);
+  return all(a) == all(b) && same_stops(a.stops, b.stops);
+}
+
+bool same_sensor(const std::optional<sim::ForceSensorOptions>& a,
+                 const std::optional<sim::ForceSensorOptions>& b) {
+  if (!a || !b) return !a && !b;
+  return a->noise_N == b->noise_N;
 }
 
 /// The plant as it was compiled: what `sim` leaves out follows the model, so the file alone does
@@ -55,13 +74,17 @@ void compare_simulated(const sim::DeviceOptions& a, const sim::DeviceOptions& b,
   const bool axes =
       std::equal(a.axes.begin(), a.axes.end(), b.axes.begin(), b.axes.end(), same_plant);
   found.compare(axes, key + ".sim.axes (or the model that a simulated axis takes its values from)");
+  found.compare(same_sensor(a.force_sensor, b.force_sensor),
+                key + ".sim.force_sensor (or the device's force_sensor, which it follows)");
 }
 
 void compare_sim(const config::Sim& a, const config::Sim& b, const std::string& key,
                  Differences& found) {
+  found.compare(a.linkage == b.linkage, key + ".sim.linkage");
   found.compare(a.hand == b.hand, key + ".sim.hand");
   found.compare(a.substeps == b.substeps, key + ".sim.substeps");
   found.compare(a.seed == b.seed, key + ".sim.seed");
+  found.compare(a.digital == b.digital, key + ".sim.digital");
   found.compare(a.failures == b.failures, key + ".sim.failures");
 }
 
@@ -70,6 +93,8 @@ void compare_device(const config::Device& a, const config::Device& b, const std:
   found.compare(a.name == b.name, key + ".name");
   found.compare(a.driver == b.driver, key + ".driver");
   found.compare(a.kinematics == b.kinematics, key + ".kinematics");
+  found.compare(a.pose == b.pose, key + ".pose");
+  found.compare(a.workspace_scale == b.workspace_scale, key + ".workspace_scale");
   compare_sim(a.sim.value_or(config::Sim{}), b.sim.value_or(config::Sim{}), key, found);
   found.compare(a.axes.size() == b.axes.size(), key + ".axes (their number)");
   for (std::size_t i = 0; i < std::min(a.axes.size(), b.axes.size()); ++i) {
@@ -93,6 +118,16 @@ std::vector<std::string> reload_obstacles(const config::Compiled& running,
     if (i < running.simulated.size() && i < fresh.simulated.size()) {
       compare_simulated(running.simulated[i], fresh.simulated[i], key, found);
     }
+  }
+  return found.take();
+}
+
+std::vector<std::string> latency_obstacles(const build::ProgramSpec& running,
+                                           const build::ProgramSpec& fresh) {
+  Differences found;
+  for (std::size_t i = 0; i < std::min(running.axes.size(), fresh.axes.size()); ++i) {
+    const bool same = running.axes[i].delay_ticks == fresh.axes[i].delay_ticks;
+    found.compare(same, "the latency of " + running.axis_names[i] + ", in whole ticks,");
   }
   return found.take();
 }

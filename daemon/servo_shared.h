@@ -62,7 +62,11 @@ struct ServoShared {
   rt::PlanMailbox<build::Program> plans;
 
   // servo -> others
-  rt::SpscRing records;
+  rt::SpscRing records;  ///< slots hold a record of any plan for these devices
+  /// Raised by the servo thread when it adopts a plan whose records look different, and then it
+  /// writes none: the supervisor takes it back once the old ones are drained. Their sequence numbers
+  /// show the gap.
+  std::atomic<bool> records_held{false};
   rt::Latest<ServoStatus> status;
   ServoCounters counters;
   std::atomic<int> thread_id{0};  ///< kernel id, for /proc/self/task

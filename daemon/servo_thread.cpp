@@ -113,7 +113,8 @@ void ServoThread::tick(const Wake& wake, bool ending) noexcept {
                    .host_fault = wake.fault,
                    .enable = !ending && shared_.enable.load(std::memory_order_relaxed)};
   take_orders(input);
-  cycle_.run(*program_, input, monotonic_ns, &shared_.records);
+  const bool held = shared_.records_held.load(std::memory_order_acquire);
+  cycle_.run(*program_, input, monotonic_ns, held ? nullptr : &shared_.records);
   if (cycle_.output().mode == control::Mode::fault)
     shared_.enable.store(false, std::memory_order_relaxed);
   account(wake);
@@ -133,6 +134,8 @@ void ServoThread::adopt_plan() noexcept {
   build::Program* fresh = shared_.plans.take();
   if (fresh == nullptr) return;
   control::carry_over(program_->plan(), program_->state(), fresh->plan(), fresh->state());
+  if (program_->plan().record != fresh->plan().record)
+    shared_.records_held.store(true, std::memory_order_relaxed);
   shared_.plans.release(std::exchange(program_, fresh));
 }
 

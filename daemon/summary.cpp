@@ -1,7 +1,9 @@
 #include "daemon/summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <bit>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -82,6 +84,23 @@ void add_faults(const Summary& s, Table& table) {
   }
 }
 
+void add_limits(const Summary& s, Table& table) {
+  if (s.limits.empty()) table.row("limits", "none");
+  for (const LimitCount& limit : s.limits)
+    table.row("limit", fmt::format("{} in {} ticks", limit.name, limit.ticks));
+}
+
+void add_devices(const Summary& s, Table& table) {
+  for (const DeviceSummary& device : s.devices) {
+    table.row(
+        "device " + device.name,
+        fmt::format("its motors did {:.6g} J of work; fade {:.3g}; {}", device.work_J, device.fade,
+                    device.not_homed.empty()
+                        ? std::string("every axis homed")
+                        : fmt::format("not homed: {}", fmt::join(device.not_homed, ", "))));
+  }
+}
+
 void add_machine(const Summary& s, Table& table) {
   if (s.thread) {
     table.row(
@@ -100,48 +119,6 @@ void add_machine(const Summary& s, Table& table) {
             s.load_average ? fmt::format("{:.2f}", *s.load_average) : "not available");
 }
 
-Json times_json(const Summary& s) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < kPhases; ++i) {
-    json[kPhaseNames[i]] = {{"p50", s.times[i].p50_us},
-                            {"p99", s.times[i].p99_us},
-                            {"p99_9", s.times[i].p999_us},
-                            {"max", s.times[i].max_us}};
-  }
-  return json;
-}
-
-Json faults_json(const Summary& s) {
-  Json json = Json::array();
-  for (const FaultCount& fault : s.faults) {
-    json.push_back({{"fault", entry(fault.code).name},
-                    {"count", fault.count},
-                    {"last", fault.last},
-                    {"last_at_s", fault.last_at_s}});
-  }
-  return json;
-}
-
-Json realtime_json(const RealtimeReport& got) {
-  Json missing = Json::array();
-  for (const MissingRight& right : got.missing) {
-    missing.push_back({{"right", right.right}, {"reason", right.reason}, {"grant", right.grant}});
-  }
-  return {{"scheduling", got.scheduling},
-          {"memory_locked", got.memory_locked},
-          {"dma_latency_held", got.dma_latency_held},
-          {"cpu", got.cpu ? Json(*got.cpu) : Json(nullptr)},
-          {"missing", std::move(missing)}};
-}
-
-Json thread_json(const std::optional<ThreadUse>& use) {
-  if (!use) return nullptr;
-  return {{"minor_faults", use->minor_faults},
-          {"major_faults", use->major_faults},
-          {"voluntary_switches", use->voluntary_switches},
-          {"involuntary_switches", use->involuntary_switches}};
-}
-
 }  // namespace
 
 void take_counters(const ServoCounters& counters, Summary& summary) {
@@ -155,6 +132,24 @@ void take_counters(const ServoCounters& counters, Summary& summary) {
   for (std::size_t i = 0; i < kPhases; ++i) {
     summary.missed_by[i] = counters.missed_by[i].load();
     summary.times[i] = percentiles(counters.times[i]);
+  }
+}
+
+void take_records(const build::ProgramSpec& spec, const LiveView& live, Summary& summary) {
+  for (const LimitEntry& row : limit_table()) {
+    const auto bit = std::countr_zero(static_cast<std::uint32_t>(row.bit));
+    const std::uint64_t ticks = live.limit_ticks[static_cast<std::size_t>(bit)];
+    if (ticks > 0) summary.limits.push_back({row.name, ticks});
+  }
+  if (!live.known) return;
+  for (std::size_t d = 0; d < spec.devices.size(); ++d) {
+    DeviceSummary device{
+        .name = spec.device_names[d], .work_J = live.work_J[d], .fade = live.fade[d]};
+    for (std::size_t i = 0; i < spec.devices[d].axes; ++i) {
+      const std::size_t axis = spec.devices[d].first_axis + i;
+      (live.homed[axis] ? device.homed : device.not_homed).push_back(spec.axis_names[axis]);
+    }
+    summary.devices.push_back(std::move(device));
   }
 }
 
@@ -204,36 +199,13 @@ std::string to_table(const Summary& s) {
             fmt::format("{:.3f} N{}", s.largest_force_N,
                         s.unproven ? ", enabled without a proof of stability" : ""));
   table.row("samples held", fmt::format("{}", s.samples_held));
+  add_limits(s, table);
   add_faults(s, table);
+  add_devices(s, table);
   table.row("records", fmt::format("{} dropped, {} lost on the way to files", s.records_dropped,
                                    s.records_lost));
   add_machine(s, table);
   return table.take();
-}
-
-Json to_json(const Summary& s) {
-  Json missed_by = Json::object();
-  for (std::size_t i = 0; i < kPhases; ++i) missed_by[kPhaseNames[i]] = s.missed_by[i];
-  return {{"duration_s", s.duration_s},
-          {"rate_Hz", s.rate_Hz},
-          {"ticks", s.ticks},
-          {"late_wakes", s.late_wakes},
-          {"overruns", s.overruns},
-          {"gaps", s.gaps},
-          {"missed_ticks", s.missed_ticks},
-          {"missed_by", std::move(missed_by)},
-          {"samples_held", s.samples_held},
-          {"times_us", s.ticks == 0 ? Json(nullptr) : times_json(s)},
-          {"largest_force_N", s.largest_force_N},
-          {"unproven", s.unproven},
-          {"faults", faults_json(s)},
-          {"records_dropped", s.records_dropped},
-          {"records_lost", s.records_lost},
-          {"servo_thread", thread_json(s.thread)},
-          {"realtime", realtime_json(s.realtime)},
-          {"kernel", s.kernel},
-          {"preempt_rt", s.preempt_rt},
-          {"load_average", s.load_average ? Json(*s.load_average) : Json(nullptr)}};
 }
 
 }  // namespace hapticd::daemon

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "control/build/program.h"
+#include "daemon/live.h"
 #include "daemon/protocol.h"
 #include "daemon/realtime.h"
 #include "daemon/servo_shared.h"
@@ -31,6 +34,18 @@ struct FaultCount {
   double last_at_s = 0;  ///< after the start of the loop
 };
 
+struct LimitCount {
+  std::string_view name;
+  std::uint64_t ticks = 0;  ///< since the start
+};
+
+struct DeviceSummary {
+  std::string name;
+  double work_J = 0;                              ///< done by its motors since the start
+  double fade = 1;                                ///< what is let through: 1 all, 0 nothing
+  std::vector<std::string> homed{}, not_homed{};  ///< its axes
+};
+
 struct Summary {
   double duration_s = 0;
   double rate_Hz = 0;
@@ -40,6 +55,8 @@ struct Summary {
   std::array<PhaseTimesSummary, kPhases> times{};
   double largest_force_N = 0;
   std::vector<FaultCount> faults;
+  std::vector<LimitCount> limits;
+  std::vector<DeviceSummary> devices;  ///< empty: no record has come yet
   std::uint64_t records_dropped = 0, records_lost = 0;
   std::optional<ThreadUse> thread;  ///< since the first tick; none: the kernel does not tell
   std::string kernel;
@@ -51,6 +68,9 @@ struct Summary {
 
 /// Counters and histograms; the caller adds the rest.
 void take_counters(const ServoCounters& counters, Summary& summary);
+
+/// What the records tell: limits and devices.
+void take_records(const build::ProgramSpec& spec, const LiveView& live, Summary& summary);
 
 /// Of a thread of this process, by kernel id, since it was made.
 std::optional<ThreadUse> read_thread_use(int thread_id);

@@ -80,9 +80,6 @@ Result<void> Supervisor::start() {
   enter(State::connecting);
   engine_ = std::make_unique<Engine>(compiled_, log_telemetry());
   if (auto connected = engine_->connect(); !connected) return connected;
-  seen_.connected = true;
-  seen_.homed = true;  // no axis of a known driver has to look for its zero
-  enter(next_state(state_, seen_));
 
   engine_->start();
   Signals::cpu_time_fault_to(&engine_->shared().host_fault);

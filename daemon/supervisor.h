@@ -52,11 +52,13 @@ class Supervisor {
   std::string missed_words();
   Summary summary() const;
   std::string status_sentence() const;
+  void watch_waiting();
 
   // supervisor_verbs.cpp: what people ask for
   std::string answer(std::string_view message);
   Result<Json> obey(const Request& request);
   Result<Json> enable(bool unproven);
+  std::string forces_wait_for() const;
   Json disable();
   Json estop();
   Json status() const;
@@ -75,8 +77,10 @@ class Supervisor {
   State state_ = State::off;
   Seen seen_;
   ServoStatus servo_;
-  std::string cause_ = "start";  // of the next transition
-  bool unproven_ = false;        // forces were asked for without a proof
+  std::string cause_ = "start";       // of the next transition
+  std::vector<std::string> waiting_;  // enable inputs and axes that stand in the way of forces
+  std::vector<std::string> told_waiting_;
+  bool unproven_ = false;  // forces were asked for without a proof
   bool ended_ = false;
 
   // An operator's way out of a fault: forces are asked for again once the loop has let go of it.

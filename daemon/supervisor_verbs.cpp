@@ -76,10 +76,15 @@ Result<Json> Supervisor::enable(bool unproven) {
     json["text"] = fmt::format("leaving fault {}", entry(servo_.fault.code).name);
   } else {
     shared.enable.store(true);
-    json["text"] =
-        state_ == State::enabled ? "forces are on" : "forces will be on once the devices are armed";
+    json["text"] = state_ == State::enabled ? "forces are on" : forces_wait_for();
   }
   return json;
+}
+
+std::string Supervisor::forces_wait_for() const {
+  if (waiting_.empty()) return "forces will be on once the devices are armed";
+  return fmt::format("forces will be on once nothing is waited for any more:\n  {}",
+                     fmt::join(waiting_, "\n  "));
 }
 
 Json Supervisor::disable() {
@@ -88,7 +93,9 @@ Json Supervisor::disable() {
   engine_->shared().enable.store(false);
   log_info("disable");
   Json json = reply(Verb::disable);
-  json["text"] = state_ == State::enabled ? "forces ramp out" : "forces are off";
+  json["text"] = state_ == State::enabled  ? "forces ramp out"
+                 : state_ == State::homing ? "the search for references ends, forces are off"
+                                           : "forces are off";
   return json;
 }
 
@@ -116,7 +123,7 @@ Json Supervisor::status() const {
                      {"axis_or_device", blamed(fault, engine_->program().spec())},
                      {"found", fault.found},
                      {"allowed", fault.allowed},
-                     {"unit", fault_unit(fault)},
+                     {"unit", fault_unit(fault, engine_->program().spec())},
                      {"text", describe_fault(fault, engine_->program().spec())}};
   } else {
     json["fault"] = nullptr;
@@ -124,6 +131,7 @@ Json Supervisor::status() const {
   json["config"] = {{"path", compiled_.document.path}, {"digest", compiled_.document.digest}};
   json["stability"] = gate_json(gate_);
   const Summary sum = summary();
+  json["waiting_for"] = waiting_;
   json["summary"] = to_json(sum);
   json["table"] = to_table(sum);
   return json;
@@ -154,7 +162,9 @@ Result<Json> Supervisor::reload() {
 /// Everything is checked before anything is changed. The manager hears READY=1 once the loop runs
 /// on it (look()).
 Result<void> Supervisor::adopt(config::Compiled fresh) {
-  const auto obstacles = reload_obstacles(compiled_, fresh);
+  auto obstacles = reload_obstacles(compiled_, fresh);
+  if (obstacles.empty())
+    obstacles = latency_obstacles(engine_->program().spec(), fresh.program->spec());
   if (!obstacles.empty()) {
     return fail(ExitCode::no, fmt::format("reload refused, the running config stays:\n  {}",
                                           fmt::join(obstacles, "\n  ")));

@@ -8,6 +8,7 @@
 #include "daemon/log.h"
 #include "daemon/monotonic.h"
 #include "daemon/supervisor.h"
+#include "daemon/waiting.h"
 
 namespace hapticd::daemon {
 namespace {
@@ -25,6 +26,7 @@ void Supervisor::look() {
   follow_clear();
   enter(next_state(state_, seen_));
   note_fault();
+  watch_waiting();
   if (engine_->swapped()) {
     log_info("reload: the loop runs on the new config");
     notify_.ready(status_sentence());
@@ -70,6 +72,16 @@ void Supervisor::note_fault() {
   ++known->count;
   known->last = text;
   known->last_at_s = static_cast<double>(monotonic_ns() - started_ns_) * 1e-9;
+}
+
+/// Forces that were asked for and wait for somebody: told whenever what they wait for changes.
+void Supervisor::watch_waiting() {
+  waiting_ = waiting_for(engine_->program().spec(), engine_->live());
+  const bool asked = engine_->shared().enable.load() && state_ != State::off;
+  if (!asked) told_waiting_.clear();
+  if (!asked || waiting_ == told_waiting_) return;
+  told_waiting_ = waiting_;
+  for (const std::string& line : waiting_) log_info("forces wait: {}", line);
 }
 
 /// The loop takes `enable` back in every tick of a fault, so it is given only once the fault has
@@ -156,6 +168,7 @@ Summary Supervisor::summary() const {
   double load = 0;
   if (::getloadavg(&load, 1) == 1) s.load_average = load;
   s.unproven = unproven_;
+  take_records(engine_->program().spec(), engine_->live(), s);
   return s;
 }
 

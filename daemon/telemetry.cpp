@@ -83,6 +83,7 @@ void Telemetry::Impl::drain() {
     const std::byte* record = ring.front();
     if (record == nullptr) return;
     count_gap(record);
+    if (events.record) events.record(record);
     flight.add(record, header);
     if (recording) {
       if (auto written = recording->append(record); !written) record_failed(written.error());

@@ -31,6 +31,7 @@ struct TelemetryEvents {
   std::function<void(const std::string& path, std::uint64_t records)> flight_written;
   std::function<void(const Error& error)>
       failed;  ///< disk full and the like: told once per file, the loop goes on
+  std::function<void(const std::byte* record)> record{};  ///< every one of them
 };
 
 class Telemetry {

@@ -12,6 +12,14 @@ constexpr std::int64_t kSuspend_ns = 50'000'000;
 
 }  // namespace
 
+std::optional<Phase> phase_beyond(const std::array<std::int64_t, kPhases>& phase_ends,
+                                  std::int64_t period_ns) noexcept {
+  for (std::size_t phase = 0; phase < kPhases; ++phase) {
+    if (phase_ends[phase] > period_ns) return static_cast<Phase>(phase);
+  }
+  return std::nullopt;
+}
+
 TickSchedule::TickSchedule(const TickScheduleOptions& options) noexcept : options_(options) {}
 
 void TickSchedule::start(ClockPair now) noexcept {
@@ -65,12 +73,9 @@ void TickSchedule::judge(ClockPair now, Wake& wake) const noexcept {
 }
 
 bool TickSchedule::finished(const std::array<std::int64_t, kPhases>& phase_ends) noexcept {
-  for (std::size_t phase = 0; phase < kPhases; ++phase) {
-    if (phase_ends[phase] <= options_.period_ns) continue;
-    late_phase_ = static_cast<Phase>(phase);
-    return true;
-  }
-  return false;
+  const std::optional<Phase> late = phase_beyond(phase_ends, options_.period_ns);
+  if (late) late_phase_ = *late;
+  return late.has_value();
 }
 
 void TickSchedule::book_missed(std::int64_t now_ns, std::int64_t missed) noexcept {

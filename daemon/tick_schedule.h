@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "control/core/fault.h"
 #include "daemon/servo_shared.h"
@@ -41,6 +42,11 @@ struct Wake {
       Phase::wake;  ///< for missed ticks: the phase that was still running when the period ended
   FaultReport fault{};
 };
+
+/// The phase that was running when the period ended, if one was. Ends of the phases are relative to
+/// the period's start [ns].
+std::optional<Phase> phase_beyond(const std::array<std::int64_t, kPhases>& phase_ends,
+                                  std::int64_t period_ns) noexcept;
 
 class TickSchedule {
  public:

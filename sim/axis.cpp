@@ -1,86 +1,58 @@
 #include "sim/axis.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace hapticd::sim {
 namespace {
 
 PlantOptions plant_options(const AxisOptions& axis, const HandOptions& hand) {
-  return {.mass_kg = axis.mass_kg + hand.mass_kg,
+  const double mass_kg = axis.mass_kg + hand.mass_kg;
+  return {.mass_kg = mass_kg,
           .damping_Ns_m = axis.damping_Ns_m + hand.damping_Ns_m,
           .stiffness_N_m = hand.stiffness_N_m,
-          .coulomb_N = axis.coulomb_N};
+          .coulomb_N = axis.coulomb_N,
+          .stops = end_stops(axis, mass_kg, std::numeric_limits<double>::infinity())};
 }
 
 }  // namespace
 
-Axis::Axis(const AxisOptions& axis, const HandOptions& hand, TimeGrid grid, std::uint64_t seed,
-           std::size_t index)
-    : encoder_(axis),
-      amplifier_(axis),
-      noise_(seed, index),
-      noise_counts_(axis.noise_counts),
+Axis::Axis(const AxisOptions& axis, const HandOptions& hand, TimeGrid grid)
+    : hand_(hand),
       plant_(plant_options(axis, hand), axis.position_m),
       script_(hand.script, axis.position_m, grid.substep_s()),
       trace_(static_cast<std::size_t>(grid.substeps), axis.position_m) {
   truth_.position_m = truth_.min_position_m = truth_.max_position_m = axis.position_m;
   truth_.rest_m = axis.position_m;
-  cut_period(grid, axis.delay_s);
-}
-
-// A delay of n periods and a rest: in each period the command of n+1 periods ago acts until the
-// rest has passed, then that of n periods ago. The sub-step in which that happens is cut in two, so
-// the change is exact.
-void Axis::cut_period(TimeGrid grid, double delay_s) {
-  constexpr double kSnap = 1e-9;  // of a period: closer than this is the same time
-  const double periods = delay_s / grid.period_s;
-  const auto whole = static_cast<std::size_t>(std::floor(periods + kSnap));
-  const double change_s = std::max(0.0, delay_s - static_cast<double>(whole) * grid.period_s);
-  const double substep_s = grid.substep_s();
-  const double snap_s = kSnap * grid.period_s;
-  for (int i = 0; i < grid.substeps; ++i) {
-    const double until_change_s = change_s - i * substep_s;
-    if (until_change_s <= snap_s) {
-      add_segment(0, substep_s, whole, true);
-    } else if (until_change_s >= substep_s - snap_s) {
-      add_segment(0, substep_s, whole + 1, true);
-    } else {
-      add_segment(0, until_change_s, whole + 1, false);
-      add_segment(until_change_s, substep_s, whole, true);
-    }
+  for (const Segment& segment : cut_period(grid, std::span(&axis.delay_s, 1))) {
+    pieces_.push_back({segment, plant_.propagator(segment.end_s - segment.begin_s)});
   }
-  efforts_.assign(whole + 2, 0.0);
 }
 
-void Axis::add_segment(double begin_s, double end_s, std::size_t effort_age, bool last) {
-  segments_.push_back({plant_.propagator(end_s - begin_s), effort_age, begin_s, last});
-}
-
-void Axis::run_tick(std::int64_t script_substep) noexcept {
-  std::copy_backward(efforts_.begin(), efforts_.end() - 1, efforts_.end());
-  efforts_.front() = held_N_;
+void Axis::run_tick(Wires& wires, std::int64_t script_substep) noexcept {
+  wires.next_period();
   std::size_t substep = 0;
   ScriptValue hand;
-  for (const Segment& segment : segments_) {
-    if (segment.begin_s == 0)
+  for (const Piece& piece : pieces_) {
+    if (piece.segment.begin_s == 0)
       hand = script_.at(script_substep + static_cast<std::int64_t>(substep));
-    run_segment(segment, hand);
-    if (segment.last) observe_substep(substep++);
+    run_piece(piece, hand, wires);
+    if (piece.segment.last) observe_substep(substep++);
   }
   truth_.energy_J = plant_.energy_J(truth_.rest_m);
 }
 
-void Axis::run_segment(const Segment& segment, const ScriptValue& hand) noexcept {
+void Axis::run_piece(const Piece& piece, const ScriptValue& hand, Wires& wires) noexcept {
   const double before_m = plant_.position_m();
-  const double rest_m = hand.rest_m + hand.rest_rate_m_s * segment.begin_s;
-  truth_.effort_N = efforts_[segment.effort_age];
+  const double rest_m = hand.rest_m + hand.rest_rate_m_s * piece.segment.begin_s;
+  truth_.effort_N = wires.effort_N(piece.segment.effort_age[0]);
   truth_.script_force_N = hand.force_N;
-  plant_.advance(segment.propagator, {truth_.effort_N + hand.force_N, rest_m, hand.rest_rate_m_s});
-  truth_.rest_m = rest_m + hand.rest_rate_m_s * segment.propagator.length_s;
+  plant_.advance(piece.propagator, {truth_.effort_N + hand.force_N, rest_m, hand.rest_rate_m_s});
+  truth_.rest_m = rest_m + hand.rest_rate_m_s * piece.propagator.length_s;
   const double step_m = plant_.position_m() - before_m;
   truth_.effort_work_J += truth_.effort_N * step_m;
   truth_.script_work_J += hand.force_N * step_m;
+  wires.moved(before_m, plant_.position_m());
 }
 
 void Axis::observe_substep(std::size_t substep) noexcept {
@@ -91,19 +63,12 @@ void Axis::observe_substep(std::size_t substep) noexcept {
   trace_[substep] = truth_.position_m;
 }
 
-double Axis::command(double effort_N) noexcept {
-  held_N_ = amplifier_.carried_N(effort_N);
-  return held_N_;
-}
-
-void Axis::cut() noexcept {
-  held_N_ = 0;
-  std::fill(efforts_.begin(), efforts_.end(), 0.0);
-}
-
-double Axis::read_encoder(double offset_m) noexcept {
-  const double noise = noise_counts_ > 0 ? noise_counts_ * noise_.normal() : 0;
-  return encoder_.counts(plant_.position_m() + offset_m, noise);
+double Axis::hand_force_N(std::int64_t script_substep) noexcept {
+  const ScriptValue script = script_.at(script_substep);
+  const double acceleration =
+      plant_.acceleration_m_s2(truth_.effort_N + script.force_N, script.rest_m);
+  return script.force_N - hand_.stiffness_N_m * (plant_.position_m() - script.rest_m) -
+         hand_.damping_Ns_m * plant_.velocity_m_s() - hand_.mass_kg * acceleration;
 }
 
 }  // namespace hapticd::sim

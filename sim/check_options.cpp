@@ -1,9 +1,10 @@
 #include "sim/check_options.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <string_view>
+
+#include "sim/check_linkage.h"
+#include "sim/check_value.h"
 
 namespace hapticd::sim {
 namespace {
@@ -11,35 +12,6 @@ namespace {
 constexpr double kMaxDelayPeriods = 1000;  // the delay line is moved by one place a tick
 constexpr int kMaxSubsteps = 10'000;
 constexpr int kMaxEncoderBits = 52;  // counts stay exact in a double
-
-std::string text(double value) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  return {digits.data(), end};
-}
-
-std::string expected(std::string_view name, std::string_view what, double found) {
-  return std::string(name) + ": expected " + std::string(what) + ", found " + text(found);
-}
-
-struct Field {
-  std::string_view name;
-  double value;
-};
-
-template <class Fields>
-std::string first_negative(const Fields& fields) {
-  for (const Field& field : fields) {
-    if (!std::isfinite(field.value) || field.value < 0) {
-      return expected(field.name, "a number >= 0", field.value);
-    }
-  }
-  return {};
-}
-
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
 
 std::string time_problem(const DeviceOptions& options) {
   if (!positive(options.period_s)) return expected("period_s", "a number > 0", options.period_s);
@@ -78,16 +50,29 @@ std::string axis_problem(const AxisOptions& axis, const DeviceOptions& options) 
   if (axis.encoder_bits < 0 || axis.encoder_bits > kMaxEncoderBits) {
     return expected("encoder_bits", "0 to 52", axis.encoder_bits);
   }
-  if (!std::isfinite(axis.position_m)) return expected("position_m", "a number", axis.position_m);
   if (axis.delay_s > kMaxDelayPeriods * options.period_s) {
     return expected("delay_s", "at most 1000 periods", axis.delay_s);
+  }
+  const std::string problem = first_not_finite(
+      std::array{Field{"position_m", axis.position_m}, Field{"zero_m", axis.zero_m},
+                 Field{"index_m", axis.index_m.value_or(0)}});
+  if (!problem.empty()) return problem;
+  if (axis.stops) {
+    const auto [min_m, max_m] = *axis.stops;
+    if (!std::isfinite(min_m) || !std::isfinite(max_m) || min_m >= max_m) {
+      return expected("stops max_m", "a number > min_m, which is " + text(min_m), max_m);
+    }
+    if (axis.position_m < min_m || axis.position_m > max_m) {
+      return expected("position_m", "between the stops, " + text(min_m) + " to " + text(max_m),
+                      axis.position_m);
+    }
   }
   // A friction force held over a sub-step must slow the mass down, not swing it: sub-steps well
   // below the hand's period.
   const double swing =
       options.period_s / options.substeps *
       std::sqrt(options.hand.stiffness_N_m / (axis.mass_kg + options.hand.mass_kg));
-  if (axis.coulomb_N > 0 && swing > 0.5) {
+  if (!options.linkage && axis.coulomb_N > 0 && swing > 0.5) {
     return expected(
         "substeps",
         "more, for this stiff hand with friction: each at most 0.5 sqrt(mass / stiffness)",
@@ -96,9 +81,20 @@ std::string axis_problem(const AxisOptions& axis, const DeviceOptions& options) 
   return first_negative(
       std::array{Field{"damping_Ns_m", axis.damping_Ns_m}, Field{"coulomb_N", axis.coulomb_N},
                  Field{"delay_s", axis.delay_s}, Field{"noise_counts", axis.noise_counts},
-                 Field{"dac_step_N", axis.dac_step_N},
+                 Field{"dac_step_N", axis.dac_step_N}, Field{"homed_at_s", axis.homed_at_s},
                  // Beyond it the amplifier could carry nothing at all.
                  Field{"max_effort_N less dac_step_N", axis.max_effort_N - axis.dac_step_N}});
+}
+
+std::string digital_problem(const std::vector<DigitalStep>& steps) {
+  double last_s = 0;
+  for (const DigitalStep& step : steps) {
+    if (!(step.at_s >= last_s) || !std::isfinite(step.at_s)) {
+      return expected("digital at_s", "a time not before " + text(last_s), step.at_s);
+    }
+    last_s = step.at_s;
+  }
+  return {};
 }
 
 std::string failure_problem(const Failure& failure, std::size_t axes) {
@@ -123,6 +119,12 @@ std::string first_problem(const DeviceOptions& options) {
   for (std::size_t i = 0; problem.empty() && i < options.failures.size(); ++i) {
     problem = failure_problem(options.failures[i], options.axes.size());
   }
+  if (problem.empty()) problem = digital_problem(options.digital);
+  if (problem.empty() && options.force_sensor) {
+    problem =
+        first_negative(std::array{Field{"force_sensor noise_N", options.force_sensor->noise_N}});
+  }
+  if (problem.empty() && options.linkage) problem = linkage_problem(options);
   return problem;
 }
 

@@ -7,21 +7,23 @@
 
 namespace hapticd::sim {
 
-/// floor(x counts_per_m + noise), wrapped into [0, 2^bits) unless bits is 0. Negative counts_per_m:
-/// reversed.
+/// floor((x - zero) counts_per_m + noise), wrapped into [0, 2^bits) unless bits is 0. Negative
+/// counts_per_m: reversed. A relative encoder has its zero where the axis starts.
 class Encoder {
  public:
   explicit Encoder(const AxisOptions& options) noexcept
       : counts_per_m_(options.counts_per_m),
+        zero_m_(options.relative ? options.position_m : options.zero_m),
         modulus_(options.encoder_bits > 0 ? std::ldexp(1.0, options.encoder_bits) : 0) {}
 
   double counts(double position_m, double noise_counts) const noexcept {
-    const double counts = std::floor(position_m * counts_per_m_ + noise_counts);
+    const double counts = std::floor((position_m - zero_m_) * counts_per_m_ + noise_counts);
     return modulus_ > 0 ? counts - modulus_ * std::floor(counts / modulus_) : counts;
   }
 
  private:
   double counts_per_m_;
+  double zero_m_;
   double modulus_;  ///< a power of two, so the wrap is exact
 };
 

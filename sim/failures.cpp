@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/time_grid.h"
+
 namespace hapticd::sim {
 
 Failures::Failures(const std::vector<Failure>& failures, double period_s) {
-  constexpr double kSnap =
-      1e-9;  // 0.3 s at 1 kHz is tick 300, although 0.3 / 0.001 is more than 300
   windows_.reserve(failures.size());
   for (const Failure& failure : failures) {
-    const auto begin = static_cast<std::int64_t>(std::ceil(failure.at_s / period_s - kSnap));
-    const auto ticks = static_cast<std::int64_t>(std::ceil(failure.for_s / period_s - kSnap));
+    const std::int64_t begin = tick_at(failure.at_s, period_s);
+    const std::int64_t ticks = tick_at(failure.for_s, period_s);
     windows_.push_back({failure, begin, begin + std::max<std::int64_t>(ticks, 1), false});
   }
 }

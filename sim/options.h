@@ -12,10 +12,10 @@
 
 namespace hapticd::sim {
 
-/// Mechanical ends of an axis: stiff, lossy springs.
+/// Mechanical ends of an axis: stiff, lossy springs (sim/end_stops.h).
 struct StopOptions {
   double min_m = 0;
-  double max_m = 0;
+  double max_m = 0;  ///< > min_m; the axis starts between them
 };
 
 /// One axis: mass and damper with Coulomb friction behind an encoder and a D/A converter. For a
@@ -27,12 +27,14 @@ struct AxisOptions {
   double delay_s = 0;       ///< command to force, >= 0, may exceed a period
   double position_m = 0;    ///< at start, at rest
   double counts_per_m =
-      1e9;  ///< not 0; negative: reversed. The value is floor(position * counts_per_m + noise)
+      1e9;  ///< not 0; negative: reversed. The value is floor((position - zero) * counts_per_m +
+            ///< noise)
+  double zero_m = 0;                   ///< position at which the encoder reads 0
   int encoder_bits = 32;               ///< the value wraps into [0, 2^bits); up to 52; 0: never
   double noise_counts = 0;             ///< standard deviation of the encoder noise
   double dac_step_N = 0;               ///< effort is rounded to multiples of this; 0: exact
   double max_effort_N = 0;             ///< saturation, > 0
-  bool relative = false;               ///< the encoder counts from 0 where the axis is at connect()
+  bool relative = false;               ///< the encoder reads 0 where the axis is at connect()
   std::optional<double> index_m{};     ///< position of the encoder's index pulse
   std::optional<StopOptions> stops{};  ///< none: it moves freely
   double homed_at_s = 0;               ///< the device says `homed` from this device time on
@@ -82,14 +84,18 @@ struct DigitalStep {
   std::uint32_t bits = 0;
 };
 
-/// A force sensor between hand and device; without one Aux::analogue stays 0.
+/// A force sensor between hand and device: Aux::analogue has the hand's force on axis i, or that on
+/// the tip of a linkage in the device frame. Without one it stays 0.
 struct ForceSensorOptions {
   double noise_N = 0;  ///< standard deviation
 };
 
-/// Axes that are joints of one linkage with a tip. AxisOptions::mass_kg is the inertia at the joint
-/// (motor and inner link's own as far as not named here); hand, scripted force and gravity act at
-/// the tip.
+/// Axes that are joints of one linkage with a tip; position_m is where a joint starts, in the
+/// linkage's own angle or length. AxisOptions::mass_kg is the inertia at the joint (motor, and of
+/// the links what is not named here). The links of a serial chain are point masses where its
+/// DhJoint says. The hand holds the tip: its mass moves with it, its spring pulls along
+/// hand_direction, towards the script's position_m from where the tip starts, its damper acts on
+/// all of the tip's velocity. It carries its own weight.
 struct LinkageOptions {
   std::variant<control::LinearMap, control::FiveBar, control::Delta, control::Serial> geometry;
   double inner_link_kg = 0;  ///< five-bar: uniform rods from base to elbow

@@ -60,6 +60,10 @@ void Plant::advance(const Propagator& p, const PlantInput& input) noexcept {
   double step = p.x_y * y + p.x_v * velocity_m_s_ + p.x_f * input.force_N + p.x_s * slope;
   double velocity =
       velocity_m_s_ + p.v_y * y + p.v_v * velocity_m_s_ + p.v_f * input.force_N + p.v_s * slope;
+  if (const double stop = stop_N(p, step); stop != 0) {
+    step += p.x_f * stop;
+    velocity += p.v_f * stop;
+  }
   if (options_.coulomb_N > 0) {
     if (sticks(p, input)) return;
     const double stopping = -velocity / p.v_f;
@@ -75,9 +79,25 @@ void Plant::advance(const Propagator& p, const PlantInput& input) noexcept {
 // between at rest).
 bool Plant::sticks(const Propagator& p, const PlantInput& input) const noexcept {
   if (velocity_m_s_ != 0) return false;
-  const double start = input.force_N - options_.stiffness_N_m * (position_m_ - input.rest_m);
+  const double start = input.force_N - options_.stiffness_N_m * (position_m_ - input.rest_m) +
+                       options_.stops.force_N(position_m_, 0);
   const double end = start + options_.stiffness_N_m * input.rest_rate_m_s * p.length_s;
   return std::abs(start) <= options_.coulomb_N && std::abs(end) <= options_.coulomb_N;
+}
+
+// With p the depth, F = max(0, k p1 + c (p1 - max(p0, 0)) / h) held over the interval, p1 = p_free -
+// x_f F the depth at its end: backward Euler. k p^2 / 2 is convex, so the spring gains at most
+// k p1 (p1 - p0) <= F (p1 - p0) in pushing and loses at least as much in letting go: with any k, c
+// and h the stop never gives energy. Friction only shortens the step, which keeps that so.
+double Plant::stop_N(const Propagator& p, double free_step_m) const noexcept {
+  const EndStops& stops = options_.stops;
+  const double free_m = stops.depth_m(position_m_ + free_step_m);
+  if (free_m == 0) return 0;
+  const double sign = free_m > 0 ? 1 : -1;
+  const double before_m = std::max(0.0, sign * stops.depth_m(position_m_));
+  const double c_h = stops.damping_Ns_m / p.length_s;
+  const double push = stops.stiffness_N_m * sign * free_m + c_h * (sign * free_m - before_m);
+  return -sign * std::max(0.0, push / (1 + (stops.stiffness_N_m + c_h) * p.x_f));
 }
 
 // The force that brings the mass to rest at the interval's end, at most the Coulomb force. Where
@@ -91,10 +111,20 @@ double Plant::friction_N(const Propagator& p, double free_step_m,
   return std::clamp(wanted, -most, most);
 }
 
+double Plant::acceleration_m_s2(double force_N, double rest_m) const noexcept {
+  const double c = options_.coulomb_N;
+  const double pull = force_N - options_.damping_Ns_m * velocity_m_s_ -
+                      options_.stiffness_N_m * (position_m_ - rest_m) +
+                      options_.stops.force_N(position_m_, velocity_m_s_);
+  const double friction =
+      velocity_m_s_ != 0 ? -std::copysign(c, velocity_m_s_) : std::clamp(-pull, -c, c);
+  return (pull + friction) / options_.mass_kg;
+}
+
 double Plant::energy_J(double rest_m) const noexcept {
   const double y = position_m_ - rest_m;
   return 0.5 * options_.mass_kg * velocity_m_s_ * velocity_m_s_ +
-         0.5 * options_.stiffness_N_m * y * y;
+         0.5 * options_.stiffness_N_m * y * y + options_.stops.energy_J(position_m_);
 }
 
 }  // namespace hapticd::sim

@@ -1,14 +1,15 @@
 // One axis as it really moves: a mass with damper, a hand held rigidly on it, and Coulomb friction.
 //
-//   M x'' = f - d x' - k (x - r(t)) + friction
+//   M x'' = f - d x' - k (x - r(t)) + friction + stops
 //
 // M = m + m_hand, d = b + b_hand (the hand's damper goes to ground), k the hand's spring, r where
 // that wants to be.
 //
 // Between two changes of f (held) and of the slope of r (linear) the solution is a matrix
-// exponential, so nothing is lost to integration whatever the interval. Friction is constant over
-// an interval (see Plant::advance).
+// exponential, so nothing is lost to integration whatever the interval. Friction and stops are
+// constant over an interval (see Plant::advance).
 #pragma once
+#include "sim/end_stops.h"
 
 namespace hapticd::sim {
 
@@ -17,6 +18,7 @@ struct PlantOptions {
   double damping_Ns_m = 0;   ///< >= 0, the hand's included
   double stiffness_N_m = 0;  ///< >= 0, the hand's spring
   double coulomb_N = 0;      ///< >= 0
+  EndStops stops{};
 };
 
 /// What acts on the mass over one interval.
@@ -46,17 +48,21 @@ class Plant {
   Propagator propagator(double length_s) const;
 
   /// Moves on by one interval. Friction is a force held over the interval that may stop the mass
-  /// but never turns it round, and its work is never positive: so it only ever takes energy.
+  /// but never turns it round, and its work is never positive: so it only ever takes energy. So do
+  /// stops, but for what their springs hold.
   void advance(const Propagator& propagator, const PlantInput& input) noexcept;
 
   double position_m() const noexcept { return position_m_; }
   double velocity_m_s() const noexcept { return velocity_m_s_; }
-  /// Kinetic energy and that of the hand's spring while it wants to be at `rest_m`.
+  /// With `force_N` acting and the hand's spring at rest at `rest_m`.
+  double acceleration_m_s2(double force_N, double rest_m) const noexcept;
+  /// Kinetic energy, that of the stops and that of the hand's spring at rest at `rest_m`.
   double energy_J(double rest_m) const noexcept;
   void set_velocity(double velocity_m_s) noexcept { velocity_m_s_ = velocity_m_s; }
 
  private:
   bool sticks(const Propagator& propagator, const PlantInput& input) const noexcept;
+  double stop_N(const Propagator& propagator, double free_step_m) const noexcept;
   double friction_N(const Propagator& propagator, double free_step_m,
                     double stopping_N) const noexcept;
 

@@ -39,15 +39,11 @@ Result<drivers::DeviceInfo> SimDevice::connect() {
   if (!problem.empty()) {
     return fail(ExitCode::bad_data, "simulated device " + options_.name + ": " + problem);
   }
-  const TimeGrid grid{options_.period_s, options_.substeps};
-  axes_.clear();
-  axes_.reserve(options_.axes.size());
-  for (std::size_t i = 0; i < options_.axes.size(); ++i) {
-    axes_.emplace_back(options_.axes[i], options_.hand, grid, options_.seed, i);
-  }
-  samples_.assign(options_.axes.size(), AxisSample{});
+  make_plants();
+  make_inputs();
   failures_ = Failures(options_.failures, options_.period_s);
-  ramp_substeps_ = std::llround(options_.ramp_s / grid.substep_s());
+  ramp_substeps_ =
+      std::llround(options_.ramp_s / TimeGrid{options_.period_s, options_.substeps}.substep_s());
   started_ = arm_wanted_ = armed_ = dropped_out_ = false;
   return drivers::DeviceInfo{.model = "simulated device",
                              .serial = {},
@@ -56,9 +52,37 @@ Result<drivers::DeviceInfo> SimDevice::connect() {
                              .worst_sample_age_s = 0};
 }
 
+void SimDevice::make_plants() {
+  const TimeGrid grid{options_.period_s, options_.substeps};
+  wires_.clear();
+  axes_.clear();
+  linkage_.reset();
+  for (std::size_t i = 0; i < options_.axes.size(); ++i) {
+    wires_.emplace_back(options_.axes[i], options_.period_s, options_.seed, i);
+    if (!options_.linkage) axes_.emplace_back(options_.axes[i], options_.hand, grid);
+  }
+  if (options_.linkage) linkage_.emplace(options_);
+}
+
+void SimDevice::make_inputs() {
+  const std::size_t axes = options_.axes.size();
+  samples_.assign(axes, AxisSample{});
+  homed_tick_.clear();
+  for (const AxisOptions& axis : options_.axes)
+    homed_tick_.push_back(tick_at(axis.homed_at_s, options_.period_s));
+  digital_.clear();
+  for (const DigitalStep& step : options_.digital)
+    digital_.push_back({tick_at(step.at_s, options_.period_s), step.bits});
+  force_noise_.clear();
+  analogue_ = {};
+  if (!options_.force_sensor) return;
+  const std::size_t channels = options_.linkage ? 3 : std::min(axes, analogue_.size());
+  for (std::size_t i = 0; i < channels; ++i) force_noise_.emplace_back(options_.seed, axes + i);
+}
+
 void SimDevice::disconnect() noexcept {
   arm_wanted_ = armed_ = false;
-  for (Axis& axis : axes_) axis.cut();
+  for (Wires& axis : wires_) axis.cut();
 }
 
 void SimDevice::request(const drivers::TickTime& time) noexcept {
@@ -69,6 +93,7 @@ void SimDevice::request(const drivers::TickTime& time) noexcept {
   run_until(time.tick);
   failures_.move_to(tick_ - first_tick_);
   measure(time.start_ns);
+  measure_force();
 }
 
 void SimDevice::run_until(std::int64_t tick) noexcept {
@@ -77,25 +102,48 @@ void SimDevice::run_until(std::int64_t tick) noexcept {
   tick_ = std::max(tick, tick_);
 }
 
+// Number of the sub-step of the hand's script that begins now; negative: before it.
+std::int64_t SimDevice::script_substep() const noexcept {
+  return armed_ ? (tick_ - armed_tick_) * options_.substeps - ramp_substeps_ : kBeforeScript;
+}
+
 void SimDevice::run_tick() noexcept {
-  const std::int64_t script_substep =
-      armed_ ? (tick_ - armed_tick_) * options_.substeps - ramp_substeps_ : kBeforeScript;
-  for (Axis& axis : axes_) axis.run_tick(script_substep);
+  if (linkage_) linkage_->run_tick(wires_, script_substep());
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].run_tick(wires_[i], script_substep());
   ++tick_;
 }
 
 void SimDevice::measure(std::int64_t stamp_ns) noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double counts = axes_[i].read_encoder(failures_.jump_m(i));
+  for (std::size_t i = 0; i < wires_.size(); ++i) {
+    const double counts = wires_[i].read_encoder(truth(i).position_m, failures_.jump_m(i));
     AxisSample& sample = samples_[i];
     const bool missing = failures_.on(FailureKind::missing, i);
     if (!missing && !failures_.on(FailureKind::stuck, i)) sample.raw = counts;
     if (failures_.on(FailureKind::nan, i)) sample.raw = kNaN;
     sample.freshness = missing ? Freshness::missing : Freshness::fresh;
-    sample.homed = true;
+    sample.homed = tick_ - first_tick_ >= homed_tick_[i];
+    sample.index = wires_[i].index().seen;
+    sample.index_raw = wires_[i].index().counts;
     sample.stamp_ns = stamp_ns;
   }
+}
+
+void SimDevice::measure_force() noexcept {
+  if (force_noise_.empty()) return;
+  if (linkage_) std::copy_n(linkage_->hand_force_N(script_substep()).begin(), 3, analogue_.begin());
+  for (std::size_t i = 0; i < force_noise_.size(); ++i) {
+    if (!linkage_) analogue_[i] = axes_[i].hand_force_N(script_substep());
+    const double noise_N = options_.force_sensor->noise_N;
+    if (noise_N > 0) analogue_[i] += noise_N * force_noise_[i].normal();
+  }
+}
+
+std::uint32_t SimDevice::digital() const noexcept {
+  std::uint32_t bits = 0;
+  for (const DigitalChange& change : digital_)
+    if (change.tick <= tick_ - first_tick_) bits = change.bits;
+  return bits;
 }
 
 drivers::Collected SimDevice::collect(std::span<AxisSample> axes, Aux& aux) noexcept {
@@ -105,6 +153,8 @@ drivers::Collected SimDevice::collect(std::span<AxisSample> axes, Aux& aux) noex
   aux = Aux{};
   aux.armed = armed_;
   aux.faulted = failures_.on(FailureKind::fault);
+  aux.digital = digital();
+  aux.analogue = analogue_;
   return drivers::Collected::complete;
 }
 
@@ -117,21 +167,20 @@ void SimDevice::switch_power() noexcept {
   if (armed == armed_) return;
   armed_ = armed;
   armed_tick_ = tick_;
-  for (Axis& axis : axes_) {
-    axis.cut();
-    axis.restart_script();
-  }
+  for (Wires& axis : wires_) axis.cut();
+  for (Axis& axis : axes_) axis.restart_script();
+  if (linkage_) linkage_->restart_script();
 }
 
 void SimDevice::command(std::span<const double> effort, std::span<double> delivered) noexcept {
-  const std::size_t count = std::min({axes_.size(), effort.size(), delivered.size()});
+  const std::size_t count = std::min({wires_.size(), effort.size(), delivered.size()});
   for (std::size_t i = 0; i < count; ++i) {
-    delivered[i] = armed_ ? axes_[i].command(effort[i]) : 0;
+    delivered[i] = armed_ ? wires_[i].command(effort[i]) : 0;
   }
 }
 
 void SimDevice::stop() noexcept {
-  for (Axis& axis : axes_) axis.command(0);
+  for (Wires& axis : wires_) axis.command(0);
 }
 
 std::string_view SimDevice::fault_text() const noexcept {

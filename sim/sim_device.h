@@ -9,8 +9,9 @@
 //
 // Missed ticks are time in which the last effort is held, as on a real device.
 #pragma once
+#include <array>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,10 @@
 #include "drivers/device.h"
 #include "sim/axis.h"
 #include "sim/failures.h"
+#include "sim/linkage.h"
+#include "sim/noise.h"
 #include "sim/options.h"
+#include "sim/wires.h"
 
 namespace hapticd::sim {
 
@@ -39,19 +43,41 @@ class SimDevice final : public drivers::Device {
 
   const DeviceOptions& options() const noexcept { return options_; }
   /// As of the last request(); axis < options().axes.size(), after connect().
-  const Truth& truth(std::size_t axis) const noexcept { return axes_[axis].truth(); }
+  const Truth& truth(std::size_t axis) const noexcept {
+    return linkage_ ? linkage_->truth(axis) : axes_[axis].truth();
+  }
+  /// As of the last request(); only of a device with options().linkage, after connect().
+  const TipTruth& tip() const noexcept { return linkage_->tip(); }
   /// Positions [m] of an axis at the ends of the sub-steps of the last period that was simulated.
-  std::span<const double> trace(std::size_t axis) const noexcept { return axes_[axis].trace(); }
+  std::span<const double> trace(std::size_t axis) const noexcept {
+    return linkage_ ? linkage_->trace(axis) : axes_[axis].trace();
+  }
 
  private:
+  struct DigitalChange {
+    std::int64_t tick = 0;  ///< of device time, from which on
+    std::uint32_t bits = 0;
+  };
+  void make_plants();
+  void make_inputs();
+  std::int64_t script_substep() const noexcept;
   void run_until(std::int64_t tick) noexcept;
   void run_tick() noexcept;
   void measure(std::int64_t stamp_ns) noexcept;
+  void measure_force() noexcept;
+  std::uint32_t digital() const noexcept;
   void switch_power() noexcept;
 
   DeviceOptions options_;
+  std::vector<Wires> wires_;  ///< of every axis
+  // One of the two moves.
   std::vector<Axis> axes_;
+  std::optional<Linkage> linkage_;
   std::vector<AxisSample> samples_;
+  std::vector<std::int64_t> homed_tick_;  ///< by axis: of device time
+  std::vector<DigitalChange> digital_;
+  std::vector<Noise> force_noise_;  ///< a channel of the force sensor each
+  std::array<double, 6> analogue_{};
   Failures failures_;
   std::int64_t ramp_substeps_ = 0;
   std::int64_t first_tick_ = 0;

@@ -35,9 +35,8 @@ double take_mean(HeldEffort& held) noexcept {
   return mean;
 }
 
-[[gnu::cold, gnu::noinline]] double book_unusual(const AxisPlan& axis, const AxisState& now,
-                                                 double q, LedgerState& ledger, double effort,
-                                                 std::int64_t missed) noexcept {
+double book_delayed(const AxisPlan& axis, const AxisState& now, double q, LedgerState& ledger,
+                    double effort, std::int64_t missed) noexcept {
   hold(axis, ledger.effort, effort, missed);
   ledger.moved = 0;
   ledger.moved_ticks = 0;
@@ -49,12 +48,13 @@ double take_mean(HeldEffort& held) noexcept {
   return take_mean(ledger.effort) * ledger.moved;
 }
 
-/// Work of one axis [J]. The everyday axis has no latency and a fresh sample after a fresh one.
+/// Work of one axis [J]. Without latency, and with a fresh sample after a fresh one, it is the last
+/// effort times the way.
 double book_axis(const AxisPlan& axis, const AxisState& now, double q, LedgerState& ledger,
                  double effort, std::int64_t missed) noexcept {
-  const bool usual = missed == 0 && now.motion == Motion::advanced && axis.delay_ticks == 0 &&
-                     axis.delay_share == 0 && ledger.effort.ticks == 0;
-  if (!usual) return book_unusual(axis, now, q, ledger, effort, missed);
+  const bool at_once =
+      now.motion == Motion::advanced && axis.delay_ticks == 0 && axis.delay_share == 0;
+  if (!at_once) return book_delayed(axis, now, q, ledger, effort, missed);
   ledger.moved = q - ledger.q;
   ledger.moved_ticks = 1;
   ledger.q = q;

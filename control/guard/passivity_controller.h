@@ -40,8 +40,8 @@ struct PassivityState {
   double reserve = 0;  ///< J
   double gain = 1;
   bool running = false;  ///< under force in the last tick: reserve and gain go on
-  double work = 0;    ///< J: of the contact force since the last fresh sample (book())
-  double damped = 0;  ///< J: that the device's own damping took meanwhile (book())
+  double work = 0;       ///< J: of the contact force since the last fresh sample (book())
+  double damped = 0;     ///< J: that the device's own damping took meanwhile (book())
   std::array<HeldEffort, kMaxAxesPerDevice> effort{};  ///< contact-force part, per axis
 };
 

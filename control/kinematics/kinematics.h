@@ -41,8 +41,9 @@ struct Linkage {
       0;  ///< where its coordinates x axes block begins in State::jacobian, row-major
   std::array<double, 3> origin{};               ///< m, of the contact's coordinates
   std::array<std::array<double, 3>, 3> turn{};  ///< coordinates x 3 (device frame)
-  double max_condition = 20;  ///< of J: no force beyond it; fading from half of it on
-  bool rotary = false;        ///< joints are angles
+  /// Of J, Frobenius: no force beyond it, fading from half of it on; infinity: J is never singular.
+  double max_condition = 20;
+  bool rotary = false;  ///< joints are angles
 };
 
 /// Cartesian axes in a turned frame: dp/dq is constant.
@@ -108,7 +109,6 @@ void holding_efforts(const Serial& chain, const double* q, const std::array<doub
 
 struct LinkageState {
   std::array<double, 3> tip{};  ///< m, device frame: where the next forward solution starts
-  bool known = false;
 };
 
 /// q, qd -> x, v and the Jacobians. Sets state.reach (0 to 1 per device: 1 well inside the

@@ -25,6 +25,7 @@ class Unusual {
       : plan_(plan.axes[index]),
         rate_Hz_(plan.rate_Hz),
         axis_(state.axes[index]),
+        ledger_(state.ledger[index]),
         q_(state.q[index]),
         qd_(state.qd[index]),
         index_(index),
@@ -85,11 +86,13 @@ class Unusual {
     const double counts = wrap(raw - axis_.raw, plan_.modulus_raw);
     const double moved = std::abs(plan_.unit_per_raw * counts);
     move(raw, counts);
-    axis_.motion = ticks > 1 ? Motion::reseeded : Motion::advanced;
+    const bool jumped = moved > plan_.max_step * ticks;
+    axis_.motion = ticks > 1 || jumped ? Motion::reseeded : Motion::advanced;
     qd_ = ticks > 1 ? 0 : plan_.unit_per_raw * counts * rate_Hz_;
     if (ticks > 1) findings_.limits.set(Limit::reseeded);
+    if (jumped) ledger_.known = false;  // nothing real went so far: it did no work
     if (!driven_) return;  // nobody drives it yet, and a device that finds its zero may jump
-    if (moved > plan_.max_step * ticks) {
+    if (jumped) {
       findings_.report({.code = Fault::encoder_jump,
                         .axis = index_,
                         .found = moved,
@@ -105,6 +108,7 @@ class Unusual {
   const AxisPlan& plan_;
   const double rate_Hz_;
   AxisState& axis_;
+  LedgerState& ledger_;
   double& q_;
   double& qd_;
   const std::uint16_t index_;

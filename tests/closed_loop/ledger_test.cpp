@@ -29,19 +29,18 @@ sim::DeviceOptions device(double counts_per_m, double delay_s) {
 
 struct Booked {
   double ledger_J = 0, truth_J = 0;
-  double throughput_J = 0;      ///< sum of |work| of the ticks
-  double delay_bound_J = 0;     ///< of ledger.h: sum of |e| a t (T - t) / 2
-  double encoder_bound_J = 0;   ///< one count times the change of the effort in every tick
+  double throughput_J = 0;     ///< sum of |work| of the ticks
+  double delay_bound_J = 0;    ///< of ledger.h: sum of |e| a t (T - t) / 2
+  double encoder_bound_J = 0;  ///< one count times the change of the effort in every tick
 };
 
 Booked run(double counts_per_m, double delay_s) {
   const double ticks = delay_s / kPeriod_s;
   const auto whole = static_cast<std::uint16_t>(ticks);
   const double share = ticks - whole;
-  ClosedLoop loop(device(counts_per_m, delay_s), {.stiffness_N_m = 1500,
-                                                  .damping_Ns_m = 0.2,
-                                                  .delay_ticks = whole,
-                                                  .delay_share = share});
+  ClosedLoop loop(
+      device(counts_per_m, delay_s),
+      {.stiffness_N_m = 1500, .damping_Ns_m = 0.2, .delay_ticks = whole, .delay_share = share});
   Booked booked;
   double last_effort_N = 0, last_work_J = 0, last_v_m_s = 0, largest_a_m_s2 = 0, changes_N = 0;
   for (int i = 0; i < 1000; ++i) {

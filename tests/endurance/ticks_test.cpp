@@ -55,7 +55,7 @@ class Wear {
   void tick(std::int64_t k) {
     travelled_ += 700 + jitter_(600);
     rig_.samples[0].raw = static_cast<double>(travelled_ & 65535);
-    rig_.samples[1].raw = 5e-324 * (1 + (k & 1023));
+    rig_.samples[1].raw = 5e-324 * static_cast<double>(1 + (k & 1023));
     const double phase = 6.283185307179586e-3 * static_cast<double>(k % 1000);
     rig_.samples[2].raw = std::round(-8000 * std::sin(phase));
     for (std::size_t i = 3; i < rig_.samples.size(); ++i) rig_.samples[i].raw = jitter_(2);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <filesystem>
 #include <fstream>
 #include <utility>
 
@@ -13,7 +14,8 @@ void DaemonTest::write_file(const std::string& name, const std::string& text) co
 }
 
 void DaemonTest::write_config(const Scenario& s) const {
-  write_file("config.yaml", fmt::format(R"(version: 1
+  write_file("config.yaml",
+             fmt::format(R"(version: 1
 loop: {{rate_Hz: {}, max_gap_ticks: {}, max_missed_per_s: 20000}}
 start: {{enable: {}}}
 devices:
@@ -24,29 +26,34 @@ devices:
         {{mass_kg: 0.2, stiffness_N_m: 300, damping_Ns_m: 2,
          script: [{{at_s: 0}}, {{at_s: 0.3, position_m: -0.02}}]}}
       failures: [{}]
-    kinematics: {{cartesian: {{directions: [x]}}}}
+{}    kinematics: {{cartesian: {{directions: [x]}}}}
     latency_s: 0
-    axes:
+{}    axes:
       - name: x
         encoder: {{counts_per_m: 1e7, stuck_s: {}}}
         actuator: {{max_force_N: 8}}
         model: {{mass_kg: 0.05, damping_Ns_m: 2, damping_uncertainty: 0.2}}
-scene:
+{}scene:
   - plane: {{name: wall, normal: [1, 0, 0], stiffness_N_m: {}, damping_Ns_m: 0.5}}
 stability: {{require: {}}}
 guard: {{max_force_N: 6, ramp_s: {}}}
 control: {{socket: {}}}
 telemetry: {{flight_dir: {}, flight_s: 2, record: {}}}
 )",
-                                        s.rate_Hz, s.max_gap_ticks, s.enable, s.failures, s.stuck_s,
-                                        s.stiffness_N_m, s.require, s.ramp_s, socket_,
-                                        s.flight_dir.empty() ? dir_.file("flight") : s.flight_dir,
-                                        s.record ? record_ : "null"));
+                         s.rate_Hz, s.max_gap_ticks, s.enable, s.failures, s.sim, s.device,
+                         s.stuck_s, s.axis, s.stiffness_N_m, s.require, s.ramp_s, socket_,
+                         s.flight_dir.empty() ? dir_.file("flight") : s.flight_dir,
+                         s.record ? record_ : "null"));
 }
 
 void DaemonTest::start(const Scenario& scenario, std::vector<std::string> more,
                        std::vector<std::string> prefix, const Process::Environment& environment) {
   write_config(scenario);
+  run(std::move(more), std::move(prefix), environment);
+}
+
+void DaemonTest::run(std::vector<std::string> more, std::vector<std::string> prefix,
+                     const Process::Environment& environment) {
   std::vector<std::string> command = std::move(prefix);
   if (command.empty() || command.back() != "--") {
     command.push_back(HAPTICD_BINARY);
@@ -114,6 +121,13 @@ daemon::Recording DaemonTest::recording() const {
   auto recording = daemon::read_recording(record_);
   EXPECT_TRUE(recording) << recording.error().text;
   return recording ? std::move(*recording) : daemon::Recording{};
+}
+
+std::string DaemonTest::flight(const std::string& dir) const {
+  std::vector<std::string> files;
+  for (const auto& file : std::filesystem::directory_iterator(dir)) files.push_back(file.path());
+  EXPECT_EQ(files.size(), 1u);
+  return files.size() == 1 ? files[0] : std::string();
 }
 
 }  // namespace hapticd::test

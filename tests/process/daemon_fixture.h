@@ -29,6 +29,9 @@ struct Scenario {
   std::string stuck_s = "null";
   std::string flight_dir = {};  ///< empty: in the test's directory
   bool record = true;
+  std::string sim = {};     ///< more lines of `sim`, indented by 6
+  std::string device = {};  ///< more lines of the device, indented by 4
+  std::string axis = {};    ///< more lines of the axis, indented by 8
 };
 
 class DaemonTest : public testing::Test {
@@ -37,6 +40,9 @@ class DaemonTest : public testing::Test {
   /// arguments.
   void start(const Scenario& scenario, std::vector<std::string> more = {},
              std::vector<std::string> prefix = {}, const Process::Environment& environment = {});
+  /// The same on whatever config.yaml holds.
+  void run(std::vector<std::string> more = {}, std::vector<std::string> prefix = {},
+           const Process::Environment& environment = {});
   void write_config(const Scenario& scenario) const;
   void write_file(const std::string& name, const std::string& text) const;
 
@@ -57,6 +63,8 @@ class DaemonTest : public testing::Test {
   /// Ends it by SIGTERM.
   int stop();
   daemon::Recording recording() const;
+  /// The one flight recording in `dir`; "" and a failure if there are none or several.
+  std::string flight(const std::string& dir) const;
 
   TempDir dir_;
   std::string config_ = dir_.file("config.yaml");

@@ -17,7 +17,7 @@ using Offline = DaemonTest;
 TEST_F(Offline, HelpListsTheVerbsThatWork) {
   EXPECT_EQ(ctl({"--help"}), 0);
   for (const char* verb :
-       {"status", "enable", "disable", "estop", "reload", "check", "simulate", "export"}) {
+       {"status", "enable", "disable", "estop", "reload", "check", "simulate", "export", "why"}) {
     EXPECT_THAT(ctl_out_, HasSubstr(verb));
   }
 }

@@ -84,6 +84,43 @@ TEST_F(Reload, AnUnprovedSceneIsRefusedWhileForcesAreOnAndKeptOffAfterwards) {
   EXPECT_EQ(stop(), 0);
 }
 
+/// Springs at the ends of the travel are a term of force, so records are longer from then on.
+TEST_F(Reload, ANewTermOfForceIsAdoptedWhileEnabledAndRecordedFromThenOn) {
+  start({});
+  ASSERT_TRUE(presses()) << hapticd_->err();
+  write_config(
+      {.axis = "        travel: {min_m: -1, max_m: 1, stiffness_N_m: 10, margin_m: 0.1}\n"});
+  ASSERT_EQ(ctl({"reload"}), 0) << ctl_err_;
+  ASSERT_TRUE(logs("the loop runs on the new config")) << hapticd_->err();
+  ASSERT_TRUE(stays_enabled(300));
+  ASSERT_EQ(ctl({"estop"}), 0);
+  ASSERT_TRUE(logs("flight recording:")) << hapticd_->err();
+  ASSERT_EQ(stop(), 0);
+
+  const auto before = recording();
+  EXPECT_EQ(before.find("left.x.travel"), nullptr);
+  const auto after = daemon::read_recording(flight(dir_.file("flight"))).value();
+  ASSERT_NE(after.find("left.x.travel"), nullptr);
+  ASSERT_GT(after.size(), 200u);
+  for (const daemon::Recording* file : {&before, &after}) {
+    const daemon::Field* sequence = file->find("sequence");
+    for (std::size_t i = 1; i < file->size(); ++i)
+      ASSERT_EQ(file->value(i, *sequence), file->value(i - 1, *sequence) + 1) << i;
+  }
+  EXPECT_GT(after.value(0, *after.find("sequence")),
+            before.value(before.size() - 1, *before.find("sequence")));
+}
+
+TEST_F(Reload, AChangedReferenceOfAnAxisIsRefused) {
+  start({});
+  ASSERT_TRUE(reaches("enabled"));
+  write_config({.axis = "        homing: {by: device}\n"});
+  EXPECT_EQ(ctl({"reload"}), 1);
+  EXPECT_THAT(ctl_err_, AllOf(HasSubstr("axes[0].homing"), HasSubstr("disable first")));
+  EXPECT_EQ(status()["state"], "enabled");
+  EXPECT_EQ(stop(), 0);
+}
+
 TEST_F(Reload, AnotherFlightDirectoryIsUsedFromThenOn) {
   start({});
   ASSERT_TRUE(reaches("enabled"));

@@ -26,8 +26,8 @@ struct Mass {
   double x = 1e-3, v = 0;
   std::deque<double> efforts{};
 
-  double work = 0;         ///< J: of the effort, over the last tick
-  double dissipated = 0;   ///< J: least that the damper took in it, (b/T) dx^2
+  double work = 0;        ///< J: of the effort, over the last tick
+  double dissipated = 0;  ///< J: least that the damper took in it, (b/T) dx^2
 
   void run(double effort) {
     efforts.push_front(effort);

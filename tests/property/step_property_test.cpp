@@ -93,10 +93,10 @@ void random_tick(Rig& rig, bool calm = false) {
   rig.input.missed_ticks = *rc::gen::weightedElement<std::int64_t>({{10, 0}, {1, 1}, {1, 1000000}});
   rig.input.enable = *rc::gen::weightedElement<bool>({{9, true}, {1, false}});
   rig.input.clear_fault = *rc::gen::arbitrary<bool>();
-  rig.input.host_fault.code = calm ? Fault::none
-                                   : *rc::gen::weightedElement<Fault>({{20, Fault::none},
-                                                                       {1, Fault::estop},
-                                                                       {1, Fault::overrun}});
+  rig.input.host_fault.code =
+      calm ? Fault::none
+           : *rc::gen::weightedElement<Fault>(
+                 {{20, Fault::none}, {1, Fault::estop}, {1, Fault::overrun}});
 }
 
 double norm_of(std::span<const double> values, const DevicePlan& device) {

@@ -67,8 +67,7 @@ inline void add_five_bar(build::ProgramSpec& spec) {
   spec.axes[first + 1].offset = 0.89;
   const auto device = static_cast<std::uint16_t>(spec.devices.size() - 1);
   for (std::uint16_t i = 0; i < 2; ++i) {
-    const auto coordinate =
-        static_cast<std::uint16_t>(spec.devices.back().first_coordinate + i);
+    const auto coordinate = static_cast<std::uint16_t>(spec.devices.back().first_coordinate + i);
     spec.contact_observers.push_back(observer(coordinate, device, 0.0185, 0.02, true, i == 1));
   }
 }
@@ -77,8 +76,14 @@ inline void add_delta(build::ProgramSpec& spec) {
   add_device(spec, 3, 3);
   spec.linkages.push_back(linkage(spec, 20));
   control::Delta delta{.linkage = static_cast<std::uint16_t>(spec.linkages.size() - 1),
-                       .a = 0.060, .b = 0.1025, .c = 0.01443, .d = 0.01125, .e = 0.01125,
-                       .f = -0.025, .r = 0.04, .s = -0.02309};
+                       .a = 0.060,
+                       .b = 0.1025,
+                       .c = 0.01443,
+                       .d = 0.01125,
+                       .e = 0.01125,
+                       .f = -0.025,
+                       .r = 0.04,
+                       .s = -0.02309};
   const double degrees[] = {105, -15, -135};
   for (std::size_t leg = 0; leg < 3; ++leg) {
     const double angle = degrees[leg] * 3.141592653589793 / 180;
@@ -123,23 +128,26 @@ inline build::ProgramSpec full_spec() {
   for (std::size_t i = 1; i < 4; ++i) line.weights[i] = -100.0 * static_cast<double>(i);
   spec.least_squares = {line};
   spec.foaws = {{.axis = 2, .window = 16, .noise = 1e-6}};
-  spec.homings = {{.axis = 2, .by = control::HomingBy::device, .velocity = 0.02,
-                   .still_ticks = 100, .max_ticks = 1000}};
+  spec.homings = {{.axis = 2,
+                   .by = control::HomingBy::device,
+                   .velocity = 0.02,
+                   .still_ticks = 100,
+                   .max_ticks = 1000}};
   spec.axis_observers = {observer(0, 0, 0.05, 1, true, false), observer(1, 0, 0.05, 1, true, true),
                          observer(2, 0, -0.02, -0.5, false, false)};
   spec.force_sensors = {{.device = 0, .channels = 3, .turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
   spec.gravity_axes = {{.axis = 1, .constant = 0.3, .swing = 0.1, .phase = 0.2}};
   spec.gravity_tips = {{.device = 0, .weight = {0, 0, 0.5}}};
   spec.frictions = {{.axis = 0, .viscous = 0.1, .coulomb = 0.02, .smooth = 0.05}};
-  spec.travels = {{.axis = 0, .min = -0.05, .max = 0.05, .stiffness = 200, .max_effort = 2,
-                   .margin = 0.02}};
+  spec.travels = {
+      {.axis = 0, .min = -0.05, .max = 0.05, .stiffness = 200, .max_effort = 2, .margin = 0.02}};
   spec.power_limits = {{.device = 0, .max_W = 2}};
   spec.thermals = {{.axis = 0, .continuous = 3, .share = 1e-3}};
   spec.workspaces = {{.device = 0, .min = {-0.1, -0.1, -0.1}, .max = {0.1, 0.1, 0.1}}};
   spec.enable_inputs = {{.device = 0, .mask = 1, .active = 1, .estop = false},
                         {.device = 0, .mask = 2, .active = 0, .estop = true}};
-  spec.passivity_controllers = {{.device = 0, .budget = 2e-3, .credit = 0.5, .leak = 1e-5,
-                                 .rise = 0.01}};
+  spec.passivity_controllers = {
+      {.device = 0, .budget = 2e-3, .credit = 0.5, .leak = 1e-5, .rise = 0.01}};
   add_five_bar(spec);
   add_delta(spec);
   add_serial(spec);

@@ -12,7 +12,8 @@ namespace hapticd::test {
 inline constexpr double kPeriod_s = 1e-3;
 
 /// The paper's device: 0.01 kg, 0.022 N s/m, observer without any bound and without a blend.
-inline build::ObserverFigures paper_observer(build::ObserverMode mode, double cutoff_Hz, int order) {
+inline build::ObserverFigures paper_observer(build::ObserverMode mode, double cutoff_Hz,
+                                             int order) {
   return {.mode = mode,
           .nominal_mass_kg = 0.01,
           .nominal_damping_Ns_m = 0.022,
@@ -28,9 +29,9 @@ struct ObservedLoop {
   double wall_N_m = 0, wall_Ns_m = 0;
   double max_command_N = 1e12;
   bool tell_unsaturated = false;  ///< the observer hears what was asked, not what was delivered
-  bool late_sensor = false;  ///< a reading is the force of one period before, alone
+  bool late_sensor = false;       ///< a reading is the force of one period before, alone
   double last_hand = 0;
-  double heard = 0;               ///< N: command that the observer takes for delivered
+  double heard = 0;  ///< N: command that the observer takes for delivered
   double last_x = 0;
   bool started = false;
 

@@ -15,8 +15,8 @@ using Matrix = Eigen::MatrixXd;
 /// strict inequality.
 constexpr double kMargin = 1e-9;
 
-/// What the planes and travel springs of one device ask of its damping, in joint space: spring part
-/// (T/2) sum k nn', damper part sum b nn'.
+/// What planes, travel springs and friction compensation of one device ask of its damping, in joint
+/// space: spring part (T/2) sum k nn', damper part sum b nn'.
 struct Demand {
   Matrix spring, damper;
 };
@@ -26,7 +26,8 @@ Matrix jacobian(const control::Plan& plan, const control::DevicePlan& device) {
   Matrix j = Matrix::Zero(device.coordinates, device.axes);
   for (const control::CartesianAxis& pair : plan.cartesian_axes) {
     const int axis = pair.axis - device.first_axis;
-    if (axis >= 0 && axis < device.axes) j(pair.coordinate - device.first_coordinate, axis) = pair.scale;
+    if (axis >= 0 && axis < device.axes)
+      j(pair.coordinate - device.first_coordinate, axis) = pair.scale;
   }
   for (const control::LinearMap& map : plan.linear_maps) {
     const control::Linkage& linkage = plan.linkages[map.linkage];
@@ -51,6 +52,11 @@ Demand demand(const control::Plan& plan, const control::DevicePlan& device) {
     const Eigen::VectorXd normal = j.transpose() * in_world;
     sum.spring += 0.5 * plan.period_s * plane.stiffness * normal * normal.transpose();
     sum.damper += plane.damping * normal * normal.transpose();
+  }
+  for (const control::FrictionAxis& friction : plan.frictions) {
+    const int axis = friction.axis - device.first_axis;
+    if (axis >= 0 && axis < device.axes)
+      sum.damper(axis, axis) += friction.viscous + friction.coulomb / friction.smooth;
   }
   for (const control::TravelPlan& travel : plan.travels) {
     const int axis = travel.axis - device.first_axis;

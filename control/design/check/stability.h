@@ -2,12 +2,13 @@
 // planes rendered directly, at zero latency, on devices whose Jacobian is constant; per device the
 // matrix inequality
 //
-//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  +  (T/2) sum_j k_j e_j e_j'  <  Delta_D
+//   (T/2) sum_i k_i n_i n_i'  +  sum_i b_i n_i n_i'  +  sum_j ((T/2) k_j + L_j) e_j e_j'  <  Delta_D
 //
-// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box, n_i the plane's
-// normal in joint coordinates, J' n, and e_j the axes with a spring of stiffness k_j at the ends of
-// their travel (both ends are one convex potential with second derivative up to k_j). For one
-// axis it is Colgate's k T/2 + b < b_device. Every plane is summed as if all were touched at once.
+// with Delta_D the diagonal of the smallest damping of each axis in its uncertainty box, n_i the
+// plane's normal in joint coordinates, J' n; k_j the stiffness of the springs at the ends of the
+// travel of axis j (both ends are one convex potential with second derivative up to k_j), and L_j
+// the steepest slope of its friction compensation. For one axis and one plane it is Colgate's
+// k T/2 + b < b_device. Every plane is summed as if all were touched at once.
 //
 // Proof. For one plane let p_k be the depth, e = p_k - p_{k-1}, d = p_{k+1} - p_k, P = max(p, 0);
 // the force is f = max(0, k p + (b/T) e) where p > 0, else 0. With the storage
@@ -23,6 +24,9 @@
 //   clipped         p > 0 but k p + (b/T) e < 0, so f = 0. For d >= 0 the unclipped force times d
 //                   is negative and, by the first case, no less than the right side. For d < 0 P
 //                   does not grow, and (b/2T) (d^2 - e^2) <= (b/T) d^2.
+// A compensation of friction u = g(e/T) with |g'| <= L gives |u d| <= (L/T) |e| |d|, at most
+// (L/2T) (e^2 + d^2): with the storage (L/2T) e^2 it asks (L/T) d^2, as a damper of L does.
+//
 // The force is held over the period, in which the device's damper takes at least d' Delta_D d / T of
 // the energy (Cauchy-Schwarz), and a passive hand gives no more than it has. The sum of (1) over the
 // planes is paid for if the matrix inequality holds; forces of several planes and devices add.
@@ -38,7 +42,7 @@ namespace hapticd::check {
 struct DeviceAssumption {
   std::string name;
   double latency_s = 0;
-  std::vector<double> min_damping;     ///< N s/m or N m s/rad per axis; empty: no model given
+  std::vector<double> min_damping;       ///< N s/m or N m s/rad per axis; empty: no model given
   std::vector<std::string> obstacles{};  ///< why the closed form does not hold for this device
 };
 

@@ -111,10 +111,11 @@ TEST(Compile, SimulatedEncoderIsThatOfTheAxis) {
   EXPECT_EQ(axis_options.counts_per_m, -163840);
   EXPECT_EQ(axis_options.encoder_bits, 20);
   EXPECT_EQ(axis_options.max_effort_N, 8);
-  EXPECT_DOUBLE_EQ(axis_options.position_m, 0.6 - 0.5);
-  EXPECT_DOUBLE_EQ(compiled.simulated[0].hand.script[0].position_m, 0.7 - 0.5);
+  EXPECT_EQ(axis_options.position_m, 0.6);
+  EXPECT_EQ(axis_options.zero_m, 0.5);
+  EXPECT_EQ(compiled.simulated[0].hand.script[0].position_m, 0.7);
   const control::AxisPlan& plan = compiled.program->plan().axes[0];
-  const double raw = axis_options.position_m * axis_options.counts_per_m;
+  const double raw = (axis_options.position_m - axis_options.zero_m) * axis_options.counts_per_m;
   EXPECT_DOUBLE_EQ(raw * plan.unit_per_raw + plan.offset, 0.6)
       << "the loop gets the axis' own position back";
 }
@@ -143,19 +144,26 @@ TEST(Compile, FailureNamesAnAxisOfItsDevice) {
   EXPECT_EQ(compiled.simulated[0].failures[0].for_s, 2);
 }
 
-TEST(Compile, PlaneNormalIsOfUnitLengthAndPerCoordinateOfTheContact) {
+TEST(Compile, CoordinatesAreWorldDirectionsInOrderWhateverTheOrderOfAxes) {
   const std::string text = replaced(with_directions("[z, x, y]"), "[1, 0, 0]", "[0, 3, 4]");
   const Compiled compiled = compiled_of(text);
-  const auto planes = compiled.program->plan().planes;
-  ASSERT_EQ(planes.size(), 1U);
-  EXPECT_EQ(planes[0].coordinates, 3);
-  EXPECT_DOUBLE_EQ(planes[0].normal[0], 0.8) << "z";
-  EXPECT_DOUBLE_EQ(planes[0].normal[1], 0.0) << "x";
-  EXPECT_DOUBLE_EQ(planes[0].normal[2], 0.6) << "y";
+  const control::Plan& plan = compiled.program->plan();
+  ASSERT_EQ(plan.planes.size(), 1U);
+  EXPECT_EQ(plan.planes[0].coordinates, 3);
+  EXPECT_DOUBLE_EQ(plan.planes[0].normal[0], 0.0) << "x";
+  EXPECT_DOUBLE_EQ(plan.planes[0].normal[1], 0.6) << "y";
+  EXPECT_DOUBLE_EQ(plan.planes[0].normal[2], 0.8) << "z";
   EXPECT_EQ(compiled.program->spec().coordinate_names,
-            (std::vector<std::string>{"left.z", "left.x", "left.y"}));
+            (std::vector<std::string>{"left.x", "left.y", "left.z"}));
   EXPECT_EQ(compiled.program->spec().axis_names,
             (std::vector<std::string>{"left.x", "left.b", "left.c"}));
+  ASSERT_EQ(plan.cartesian_axes.size(), 3U);
+  const std::array<int, 3> axis_of{1, 2, 0};
+  for (std::size_t i = 0; i < axis_of.size(); ++i) {
+    EXPECT_EQ(plan.cartesian_axes[i].coordinate, i);
+    EXPECT_EQ(plan.cartesian_axes[i].axis, axis_of[i]);
+    EXPECT_EQ(plan.cartesian_axes[i].scale, 1);
+  }
 }
 
 TEST(Compile, NormalIsProjectedNotStretchedOnFewerDirections) {
@@ -242,14 +250,6 @@ TEST(Compile, ScriptTimesIncrease) {
   const std::string text = replaced(
       kSmall, "latency_s: 0", "sim: {hand: {script: [{at_s: 1}, {at_s: 1}]}}\n    latency_s: 0");
   expect_error(text, "7:45", "devices[0].sim.hand.script[1].at_s", {"later", "1 s"});
-}
-
-TEST(Compile, SpringyScriptedHandNeedsOneEncoderOffset) {
-  std::string text = replaced(with_directions("[x, y, z]"), "sim: {",
-                              "sim: {hand: {stiffness_N_m: 5, script: [{at_s: 0}]}, ");
-  EXPECT_TRUE(errors_of(text).empty());
-  text = replaced(text, "counts_per_m: 1000,", "counts_per_m: 1000, offset_m: 0.1,");
-  expect_error(text, "8:44", "devices[0].sim.hand.script", {"encoder.offset_m"});
 }
 
 TEST(Compile, SimulatedStartIsWithinTheEncodersRange) {

@@ -13,7 +13,11 @@ const std::vector<std::string>& examples() {
   static const std::vector<std::string> texts = {
       file_text(source_path("config/examples/wall.yaml")),
       file_text(source_path("config/examples/two_devices.yaml")),
-      file_text(source_path("config/examples/paper2_wall.yaml"))};
+      file_text(source_path("config/examples/paper2_wall.yaml")),
+      file_text(source_path("config/examples/five_bar.yaml")),
+      file_text(source_path("config/examples/falcon_sim.yaml")),
+      file_text(source_path("config/examples/observer.yaml")),
+      file_text(source_path("config/examples/homing.yaml"))};
   return texts;
 }
 

@@ -26,14 +26,14 @@ TEST(Reader, SmallConfigIsReadInFull) {
   EXPECT_EQ(std::get<Plane>(config.scene.at(0)).normal, (std::array<double, 3>{1, 0, 0}));
 }
 
-TEST(Reader, KeysOfTheDesignsExampleThatHaveOneValueAreTaken) {
+TEST(Reader, WrittenDefaultsAreTheDefaults) {
   const std::string text = replaced(
       kSmall, "      - name: x\n",
       "      - name: x\n        kind: linear\n"
       "        velocity: {estimator: backward_difference}\n        observer: {mode: off}\n");
   EXPECT_EQ(config_of(text), config_of(kSmall));
-  expect_error(replaced(text, "mode: off", "mode: classic"), "12:26",
-               "devices[0].axes[0].observer.mode", {"expected off", "'classic'"});
+  expect_error(replaced(text, "mode: off", "mode: clasic"), "12:26",
+               "devices[0].axes[0].observer.mode", {"one of off, model", "'classic'"});
 }
 
 TEST(Reader, UnknownKeyGetsTheNearestValidOne) {
@@ -50,7 +50,7 @@ TEST(Reader, UnknownKeyFarFromAllGetsTheList) {
 
 TEST(Reader, MissingKeyIsNamedAtItsMap) {
   expect_error(replaced(kSmall, "counts_per_m: 163840, ", ""), "10:18",
-               "devices[0].axes[0].encoder.counts_per_m", {"missing", "counts per metre"});
+               "devices[0].axes[0].encoder.counts_per_m", {"missing", "counts_per_m", "linear"});
   expect_error(replaced(kSmall, "version: 1\n", ""), "1:1", "version", {"missing"});
   expect_error(replaced(kSmall, "    latency_s: 0\n", ""), "4:5", "devices[0].latency_s",
                {"missing"});

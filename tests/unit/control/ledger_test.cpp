@@ -102,6 +102,16 @@ TEST_F(Ledger, DampingOverAGapIsThatOfTheMeanSpeed) {
   EXPECT_NEAR(rig.program.state().passivity_controllers[0].damped, 8e-3, 1e-12);
 }
 
+TEST_F(Ledger, AnEncoderThatJumpsDoesNoWork) {
+  Rig rig(spec());
+  rig.enable_at(-1e-3);
+  const double before = work(rig);
+  rig.delivered[0] = 4;
+  rig.at(0.5);
+  EXPECT_EQ(rig.program.state().fault.code, Fault::encoder_jump);
+  EXPECT_EQ(work(rig), before);
+}
+
 TEST_F(Ledger, TheFirstSampleIsNoWay) {
   Rig rig(spec());
   rig.delivered[0] = 5;

@@ -90,8 +90,7 @@ TEST(Temperature, HeatFollowsTheMotorsLawAndNeverPassesOne) {
   for (int i = 0; i < 5000; ++i) {
     const TickOutput out = rig.at(-0.006);
     effort = out.effort[0];
-    for (int sub = 0; sub < 100; ++sub)
-      heat += 1e-5 / tau_s * (effort * effort / 9 - heat);
+    for (int sub = 0; sub < 100; ++sub) heat += 1e-5 / tau_s * (effort * effort / 9 - heat);
     highest = std::max(highest, rig.program.state().heat[0]);
     ASSERT_NEAR(rig.program.state().heat[0], heat, 2e-3) << i;
     limited = limited || out.limits.has(Limit::temperature);
@@ -111,8 +110,8 @@ TEST(Temperature, AColdMotorGetsAllItCanTake) {
 
 build::ProgramSpec travel_spec() {
   auto spec = spec_of(1);
-  spec.travels = {{.axis = 0, .min = -0.05, .max = 0.05, .stiffness = 500, .max_effort = 2,
-                   .margin = 0.01}};
+  spec.travels = {
+      {.axis = 0, .min = -0.05, .max = 0.05, .stiffness = 500, .max_effort = 2, .margin = 0.01}};
   return spec;
 }
 

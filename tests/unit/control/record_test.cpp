@@ -53,7 +53,8 @@ TEST(Record, HoldsWhatTheTickSawAndSaid) {
   EXPECT_NEAR(read<double>(record, at.effort.offset), 2.0, 1e-12);
   EXPECT_NEAR(read<double>(record, at.scene_force.offset), 2.0, 1e-12);
   EXPECT_EQ(read<Freshness>(record, at.freshness.offset + 1), Freshness::fresh);
-  for (std::uint32_t i = at.freshness.offset + 2; i < at.bytes; ++i)
+  EXPECT_EQ(read<std::uint8_t>(record, at.homed.offset + 1), 1);
+  for (std::uint32_t i = at.homed.offset + 2; i < at.bytes; ++i)
     EXPECT_EQ(record[i], std::byte{0}) << "padding";
 }
 

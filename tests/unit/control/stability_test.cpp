@@ -50,6 +50,43 @@ TEST(Passive, LatencyMissingModelAndUndampedAxisAreNotCertified) {
     EXPECT_FALSE(no.proved);
 }
 
+TEST(Passive, FrictionCompensationAsksItsSlope) {
+  auto spec = walls(1, {test::wall(1000, 0.2)});
+  spec.frictions = {{.axis = 0, .viscous = 0.1, .coulomb = 0.02, .smooth = 0.1}};
+  EXPECT_NEAR(answer(spec, {2.0}).damping_used, (0.5 + 0.2 + 0.3) / 2, 1e-12);
+  EXPECT_NEAR(answer(spec, {2.0}).longest_hold_s, 2e-3, 1e-15);
+}
+
+TEST(Passive, TravelSpringsCountOnceForBothEnds) {
+  auto spec = walls(1, {});
+  spec.travels = {{.axis = 0, .min = -1, .max = 1, .stiffness = 400, .max_effort = 1, .margin = 1}};
+  EXPECT_NEAR(answer(spec, {1.0}).damping_used, 0.2, 1e-12);
+}
+
+TEST(Passive, AScaledWorkspaceIsStifferByItsSquare) {
+  auto spec = walls(1, {test::wall(1000, 0)});
+  spec.cartesian_axes = {{.axis = 0, .coordinate = 0, .scale = -3}};
+  EXPECT_NEAR(answer(spec, {9.0}).damping_used, 0.5, 1e-12);
+}
+
+TEST(Passive, ATurnedDeviceMeetsThePlaneWithBothItsAxes) {
+  auto spec = walls(2, {test::wall(1000, 0, 2)});
+  spec.linkages = {{.axes = 2, .coordinates = 2, .turn = {{{0.6, -0.8, 0}, {0.8, 0.6, 0}}}}};
+  spec.linear_maps = {{.columns = {{{1, 0}, {0, 1}, {0, 0}}}}};
+  // n = (0.6, -0.8) in joint coordinates: 0.5 (0.36 / d1 + 0.64 / d2).
+  EXPECT_NEAR(answer(spec, {1.0, 2.0}).damping_used, 0.5 * (0.36 + 0.32), 1e-12);
+}
+
+TEST(Passive, ObstaclesAreNamedAndNothingIsProved) {
+  const build::Program program(walls(1, {test::wall(10, 0)}));
+  const auto no =
+      passive(program.plan(),
+              {{.name = "left", .min_damping = {1.0}, .obstacles = {"the first", "the second"}}})
+          .at(0);
+  EXPECT_FALSE(no.proved);
+  EXPECT_EQ(no.why, "the first; the second");
+}
+
 TEST(Passive, PlanesInACornerAddUpAndRightAnglesDoNotDisturb) {
   control::PlaneContact floor = test::wall(1000, 0, 2);
   floor.normal = {0, 1, 0};

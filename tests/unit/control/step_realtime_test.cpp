@@ -9,8 +9,8 @@
 
 #include <functional>
 
-#include "tests/support/heap_guard.h"
 #include "tests/support/full_program.h"
+#include "tests/support/heap_guard.h"
 
 namespace hapticd::control {
 namespace {

@@ -72,6 +72,36 @@ TEST(Summary, TellsEveryFaultWithItsCount) {
   EXPECT_EQ(to_json(summary)["faults"][0]["count"], 2);
 }
 
+build::ProgramSpec one_device() {
+  build::ProgramSpec spec;
+  spec.devices = {{.axes = 2, .coordinates = 2}};
+  spec.device_names = {"left"};
+  spec.axis_names = {"left.x", "left.y"};
+  return spec;
+}
+
+TEST(Summary, TellsEachDeviceAndHowOftenEachLimitBit) {
+  LiveView live{.known = true, .homed = {true, false}, .work_J = {0.125}, .fade = {0.5}};
+  live.limit_ticks[1] = 7;
+  Summary summary;
+  take_records(one_device(), live, summary);
+  const std::string table = to_table(summary);
+  EXPECT_THAT(table, HasSubstr("force in 7 ticks"));
+  EXPECT_THAT(table, HasSubstr("did 0.125 J of work; fade 0.5; not homed: left.y"));
+  const Json json = to_json(summary);
+  EXPECT_EQ(json["limits"], (Json{{"force", 7}}));
+  EXPECT_EQ(json["devices"][0]["work_J"], 0.125);
+  EXPECT_EQ(json["devices"][0]["fade"], 0.5);
+  EXPECT_EQ(json["devices"][0]["homed"], (Json{{"left.x", true}, {"left.y", false}}));
+}
+
+TEST(Summary, BeforeTheFirstRecordItKnowsNoDevice) {
+  Summary summary;
+  take_records(one_device(), {}, summary);
+  EXPECT_TRUE(to_json(summary)["devices"].empty());
+  EXPECT_THAT(to_table(summary), HasSubstr("limits              none"));
+}
+
 TEST(Summary, NamesForcesWithoutAProof) {
   Summary summary;
   summary.unproven = true;

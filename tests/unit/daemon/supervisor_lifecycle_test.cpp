@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <utility>
 
 #include "daemon/lifecycle.h"
 
@@ -12,8 +12,7 @@ using control::Mode;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr Seen kRunning{
-    .starting = true, .connected = true, .homed = true, .looping = true, .mode = Mode::idle};
+constexpr Seen kRunning{.starting = true, .looping = true, .mode = Mode::idle};
 
 Seen running(Mode mode) {
   Seen seen = kRunning;
@@ -21,32 +20,28 @@ Seen running(Mode mode) {
   return seen;
 }
 
-TEST(Lifecycle, StartUpPassesThroughEveryState) {
-  std::vector<State> passed;
-  for (State state = State::off; state != State::ready; passed.push_back(state))
-    state = next_state(state, kRunning);
-  EXPECT_EQ(passed, (std::vector{State::connecting, State::homing, State::ready}));
-}
-
-TEST(Lifecycle, WaitsInEachStateForWhatIsMissing) {
+TEST(Lifecycle, ConnectsUntilTheLoopRuns) {
   EXPECT_EQ(next_state(State::off, {}), State::off);
+  EXPECT_EQ(next_state(State::off, {.starting = true}), State::connecting);
   EXPECT_EQ(next_state(State::connecting, {.starting = true}), State::connecting);
-  EXPECT_EQ(next_state(State::homing, {.starting = true, .connected = true}), State::homing);
-  EXPECT_EQ(next_state(State::homing, {.starting = true, .connected = true, .homed = true}),
-            State::homing);
+  EXPECT_EQ(next_state(State::connecting, {}), State::off);
+  EXPECT_EQ(next_state(State::connecting, kRunning), State::ready);
 }
 
 TEST(Lifecycle, ARunningLoopSaysWhereItIs) {
-  for (const State now : {State::ready, State::enabled, State::fault}) {
+  for (const State now : {State::ready, State::homing, State::enabled, State::fault}) {
     EXPECT_EQ(next_state(now, running(Mode::idle)), State::ready);
+    EXPECT_EQ(next_state(now, running(Mode::homing)), State::homing);
     EXPECT_EQ(next_state(now, running(Mode::enabled)), State::enabled);
     EXPECT_EQ(next_state(now, running(Mode::fault)), State::fault);
   }
 }
 
 TEST(Lifecycle, AnEndedLoopIsOffFromAnywhere) {
-  for (const State now : {State::ready, State::enabled, State::fault})
+  for (const State now : {State::ready, State::homing, State::enabled, State::fault}) {
     EXPECT_EQ(next_state(now, {}), State::off);
+    EXPECT_EQ(next_state(now, {.starting = true}), State::off);
+  }
 }
 
 build::ProgramSpec names() {
@@ -63,6 +58,17 @@ TEST(DescribeFault, NamesTheAxisTheFiguresAndWhatToDo) {
   EXPECT_THAT(text, HasSubstr("faster than guard.max_velocity"));
   EXPECT_THAT(text, HasSubstr("left.x: found 2.5 m/s, allowed 1.5 m/s"));
   EXPECT_THAT(text, HasSubstr("hapticctl enable"));
+}
+
+TEST(DescribeFault, ARotaryAxisHasItsOwnUnits) {
+  build::ProgramSpec spec = names();
+  spec.rotary = {true};
+  for (const auto& [code, unit] :
+       {std::pair{Fault::velocity, "2.5 rad/s"}, std::pair{Fault::encoder_jump, "2.5 rad,"},
+        std::pair{Fault::travel, "2.5 rad,"}}) {
+    const FaultReport fault{.code = code, .axis = 0, .found = 2.5, .allowed = 1.5};
+    EXPECT_THAT(describe_fault(fault, spec), HasSubstr(unit));
+  }
 }
 
 TEST(DescribeFault, SaysNothingOfFiguresThatAFaultDoesNotHave) {

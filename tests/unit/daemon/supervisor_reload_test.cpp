@@ -50,7 +50,7 @@ TEST(Reload, NothingChangedIsNoObstacle) {
   EXPECT_THAT(after_config([](auto&) {}), IsEmpty());
 }
 
-TEST(Reload, SceneGuardModelStabilityStartAndTelemetryMayChange) {
+TEST(Reload, SceneGuardModelsCompensationsStabilityStartAndTelemetryMayChange) {
   EXPECT_THAT(after([](config::Compiled& fresh) {
                 config::Config& c = fresh.document.config;
                 c.scene = {config::Plane{}};
@@ -59,6 +59,14 @@ TEST(Reload, SceneGuardModelStabilityStartAndTelemetryMayChange) {
                 c.devices[0].latency_s = 1e-4;
                 c.devices[0].axes[0].model = config::AxisModel{.mass_kg = 1, .damping_Ns_m = 1};
                 c.devices[0].axes[0].encoder.stuck_s = 0.5;
+                c.devices[0].axes[0].actuator.continuous_force_N = 2;
+                c.devices[0].axes[0].actuator.thermal_time_s = 5;
+                c.devices[0].axes[0].velocity.estimator = config::Estimator::low_pass;
+                c.devices[0].axes[0].observer.mode = config::ObserverMode::model;
+                c.devices[0].axes[0].compensation.coulomb_share = 0.5;
+                c.devices[0].axes[0].travel = config::Travel{};
+                c.devices[0].gravity = config::Gravity{};
+                c.devices[0].enable_inputs = {config::EnableInput{}};
                 c.stability.require = config::Require::none;
                 c.start.enable = config::EnableWhen::when_ready;
                 c.telemetry.record = "file";
@@ -94,9 +102,36 @@ TEST(Reload, DevicesAndAxesNeedARestart) {
   EXPECT_THAT(after_config([](auto& c) { c.devices[0].axes[0].actuator.max_force_N = 1; }),
               refused_for("devices[0].axes[0].actuator"));
   EXPECT_THAT(after_config([](auto& c) {
-                c.devices[0].kinematics.cartesian.directions = {config::Direction::y};
+                c.devices[0].kinematics = config::Cartesian{.directions = {config::Direction::y}};
               }),
               refused_for("devices[0].kinematics"));
+  EXPECT_THAT(after_config([](auto& c) {
+                c.devices[0].pose.position_m = {1, 0, 0};
+              }),
+              refused_for("devices[0].pose"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].workspace_scale = 2; }),
+              refused_for("devices[0].workspace_scale"));
+}
+
+TEST(Reload, WhereAnAxisFindsItsReferenceNeedsARestart) {
+  EXPECT_THAT(after_config([](auto& c) {
+                c.devices[0].axes[0].homing.by = config::HomingMethod::hard_stop;
+              }),
+              refused_for("devices[0].axes[0].homing"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].axes[0].homing.position_m = 0.1; }),
+              refused_for("devices[0].axes[0].homing"));
+}
+
+TEST(Reload, AWholeTickOfLatencyNeedsARestartAndAShareOfOneDoesNot) {
+  build::ProgramSpec running;
+  running.axes.resize(2);
+  running.axis_names = {"left.x", "left.y"};
+  build::ProgramSpec fresh = running;
+  fresh.axes[1].delay_share = 0.5;
+  EXPECT_THAT(latency_obstacles(running, fresh), IsEmpty());
+  fresh.axes[1].delay_ticks = 1;
+  EXPECT_THAT(latency_obstacles(running, fresh),
+              ElementsAre(AllOf(HasSubstr("the latency of left.y"), HasSubstr("disable first"))));
 }
 
 TEST(Reload, TheSimulatedTruthNeedsARestart) {
@@ -106,8 +141,25 @@ TEST(Reload, TheSimulatedTruthNeedsARestart) {
               refused_for("devices[0].sim.seed"));
   EXPECT_THAT(after_config([](auto& c) { c.devices[0].sim->failures = {config::SimFailure{}}; }),
               refused_for("devices[0].sim.failures"));
-  EXPECT_THAT(after([](config::Compiled& fresh) { fresh.simulated[0].axes[0].mass_kg = 1; }),
-              ElementsAre(HasSubstr("devices[0].sim.axes")));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].sim->linkage.tip_kg = 1; }),
+              refused_for("devices[0].sim.linkage"));
+  EXPECT_THAT(after_config([](auto& c) {
+                c.devices[0].sim->digital = {{1, 1}};
+              }),
+              refused_for("devices[0].sim.digital"));
+  for (const auto& change : std::vector<std::function<void(sim::AxisOptions&)>>{
+           [](auto& axis) { axis.mass_kg = 1; }, [](auto& axis) { axis.index_m = 0.01; },
+           [](auto& axis) {
+             axis.stops = sim::StopOptions{-1, 1};
+           },
+           [](auto& axis) { axis.relative = true; }, [](auto& axis) { axis.homed_at_s = 1; }}) {
+    EXPECT_THAT(after([&](config::Compiled& fresh) { change(fresh.simulated[0].axes[0]); }),
+                ElementsAre(HasSubstr("devices[0].sim.axes")));
+  }
+  EXPECT_THAT(after([](config::Compiled& fresh) {
+                fresh.simulated[0].force_sensor = sim::ForceSensorOptions{};
+              }),
+              ElementsAre(HasSubstr("devices[0].sim.force_sensor")));
 }
 
 TEST(Reload, EveryObstacleIsNamedAtOnce) {

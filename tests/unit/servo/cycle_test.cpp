@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <utility>
 
 #include "tests/support/fake_device.h"
 #include "tests/support/program_fixture.h"
@@ -18,8 +19,9 @@ std::int64_t no_clock() noexcept {
 }
 
 struct Loop {
-  explicit Loop(double stiffness = 1000)
-      : program(spec(stiffness)), cycle({&device}, program.plan()) {}
+  explicit Loop(double stiffness = 1000) : Loop(spec(stiffness)) {}
+  explicit Loop(build::ProgramSpec given)
+      : program(std::move(given)), cycle({&device}, program.plan()) {}
 
   static build::ProgramSpec spec(double stiffness) {
     auto spec = test::spec_of(1);
@@ -79,6 +81,46 @@ TEST(Cycle, DeviceThatDropsOutIsAFaultNamedByDevice) {
   loop.device.armed = false;
   EXPECT_EQ(loop.tick().fault.code, Fault::disarmed);
   EXPECT_EQ(loop.cycle.output().fault.device, 0);
+  EXPECT_EQ(loop.device.effort[0], 0.0);
+}
+
+/// An axis that is driven to its stop before forces may be on, and stands there for a second until
+/// that is believed.
+struct HomingLoop : Loop {
+  HomingLoop() : Loop(searching()) {}
+  static build::ProgramSpec searching() {
+    auto spec = Loop::spec(1000);
+    spec.homings = {{.axis = 0,
+                     .by = control::HomingBy::hard_stop,
+                     .position = -1,
+                     .effort = -1,
+                     .effort_per_tick = 0.01,
+                     .velocity = 0.05,
+                     .still_ticks = 1000,
+                     .max_ticks = 5000}};
+    return spec;
+  }
+};
+
+TEST(Cycle, DevicesStayArmedWhileAnAxisIsHomed) {
+  HomingLoop loop;
+  loop.enable();
+  EXPECT_EQ(loop.cycle.output().mode, Mode::homing);
+  EXPECT_TRUE(loop.device.armed);
+  EXPECT_LT(loop.device.effort[0], 0);
+  loop.input.enable = false;
+  loop.tick();
+  EXPECT_EQ(loop.cycle.output().mode, Mode::idle);
+  EXPECT_EQ(loop.device.effort[0], 0.0);
+  EXPECT_FALSE(loop.device.armed);
+}
+
+TEST(Cycle, DeviceThatDropsOutWhileItIsHomedIsAFault) {
+  HomingLoop loop;
+  loop.enable();
+  ASSERT_EQ(loop.cycle.output().mode, Mode::homing);
+  loop.device.armed = false;
+  EXPECT_EQ(loop.tick().fault.code, Fault::disarmed);
   EXPECT_EQ(loop.device.effort[0], 0.0);
 }
 

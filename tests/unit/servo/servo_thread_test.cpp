@@ -33,13 +33,15 @@ class Servo : public testing::Test {
  protected:
   Servo()
       : program(wall_spec(1000)),
-        storage(program.plan().record.bytes * 64),
-        shared(storage, program.plan().record.bytes),
+        storage(slot_bytes() * 64),
+        shared(storage, slot_bytes()),
         thread({.schedule = {.max_gap_ticks = 1'000'000, .max_missed_per_s = 1'000'000}}, {&device},
                &program, shared) {
     device.raw[0] = test::Rig::raw(-0.002);
     thread.start(report);
   }
+  /// Room for another plan's records too.
+  std::size_t slot_bytes() const { return program.plan().record.bytes + 64; }
   bool reaches(Mode mode) {
     return eventually([&] {
       ServoStatus status;
@@ -116,6 +118,22 @@ TEST_F(Servo, PlanIsSwappedUnderARunningLoop) {
   thread.stop();
   EXPECT_EQ(thread.program(), &harder);
   EXPECT_NEAR(shared.counters.largest_force_N.load(), 4.0, 1e-9);
+}
+
+TEST_F(Servo, RecordsOfAnotherLayoutWaitUntilTheyAreAskedFor) {
+  auto spec = wall_spec(1000);
+  spec.frictions = {{.axis = 0}};  // one more array in each record
+  build::Program other(std::move(spec));
+  ASSERT_GT(other.plan().record.bytes, program.plan().record.bytes);
+  ASSERT_TRUE(shared.plans.offer(&other));
+  ASSERT_TRUE(eventually([&] { return shared.plans.collect() != nullptr; }));
+  EXPECT_TRUE(shared.records_held);
+  while (shared.records.front() != nullptr) shared.records.pop();
+  ASSERT_TRUE(next_ticks());
+  EXPECT_EQ(shared.records.front(), nullptr);
+  shared.records_held = false;
+  EXPECT_TRUE(eventually([&] { return shared.records.front() != nullptr; }));
+  thread.stop();
 }
 
 TEST_F(Servo, FullRecordRingDoesNotStopTheLoop) {
