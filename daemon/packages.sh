@@ -7,7 +7,7 @@
   packages_build=(g++ cmake ninja-build pkg-config libeigen3-dev libexpected-dev libyaml-cpp-dev libspdlog-dev
     libcli11-dev nlohmann-json3-dev libsystemd-dev scdoc)
   packages_tests=(libgtest-dev libgmock-dev librapidcheck-dev systemd man-db shellcheck clang-format-14)
-  packages_clang=(clang-14)
+  packages_clang=(clang-14 libclang-rt-14-dev)
   packages_rtsan=(clang-22 libclang-rt-22-dev)
   packages_bench=(libbenchmark-dev)
 }

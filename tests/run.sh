@@ -11,7 +11,7 @@ usage() {
   cat << 'END'
 usage: tests/run.sh [--clang] [--asan] [--tsan] [--rtsan] [--long] [--bench] [--vm] [--fuzz]
   --clang   build with clang 14, benchmarks too, warnings are errors; unit tests
-  --asan    AddressSanitizer and UndefinedBehaviorSanitizer, all tests but lint and service
+  --asan    clang 14, AddressSanitizer and UndefinedBehaviorSanitizer, all tests but lint and service
   --tsan    ThreadSanitizer, the tests of threads and what they share
   --rtsan   RealtimeSanitizer (clang 22), the tests of the loop
   --long    the tests that take long
@@ -70,12 +70,15 @@ suite_default() {
 }
 suite_clang() {
   install_packages "${packages_clang[@]}" "${packages_bench[@]}"
-  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DHAPTICD_WERROR=ON -DHAPTICD_BUILD_BENCH=ON
+  build_in build/clang clang++-14 all -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 -DHAPTICD_WERROR=ON -DHAPTICD_BUILD_BENCH=ON
   run_ctest --test-dir build/clang -LE 'long|process|lint|service'
 }
+# By clang, with warnings as errors: so it is the second compiler's word too, without a build of its own.
 suite_asan() {
+  install_packages "${packages_clang[@]}" "${packages_bench[@]}"
   fix_addresses
-  build_in build/asan g++ all "${sanitized[@]}" -DHAPTICD_SANITIZE=address,undefined
+  build_in build/asan clang++-14 all "${sanitized[@]}" -DHAPTICD_SANITIZE=address,undefined -DHAPTICD_WERROR=ON \
+    -DHAPTICD_BUILD_BENCH=ON
   run_ctest --test-dir build/asan -LE 'long|lint|service'
 }
 suite_tsan() {
