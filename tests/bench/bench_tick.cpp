@@ -25,7 +25,7 @@ std::int64_t monotonic_ns() noexcept {
 
 void run(benchmark::State& state, hapticd::daemon::Now now) {
   TickRig rig(static_cast<std::size_t>(state.range(0)), static_cast<std::size_t>(state.range(1)),
-              static_cast<std::size_t>(state.range(2)));
+              static_cast<std::size_t>(state.range(2)), state.range(3) != 0);
   for (auto _ : state) {
     rig.tick(now);
     benchmark::DoNotOptimize(rig.force());
@@ -42,17 +42,20 @@ void tick_stamps(benchmark::State& state) {
 }
 
 void settings(benchmark::internal::Benchmark* bench) {
-  bench->ArgNames({"devices", "axes", "planes"})->Repetitions(15)->ReportAggregatesOnly();
+  bench->ArgNames({"devices", "axes", "planes", "observed"})
+      ->Repetitions(15)
+      ->ReportAggregatesOnly();
 }
 
 BENCHMARK(tick_no_stamps)
     ->Apply(settings)
-    ->Args({1, 3, 0})
-    ->Args({1, 3, 1})
-    ->Args({1, 3, 16})
-    ->Args({1, 1, 1})
-    ->Args({3, 3, 1});
-BENCHMARK(tick_stamps)->Apply(settings)->Args({1, 3, 0})->Args({3, 3, 1});
+    ->Args({1, 3, 0, 0})
+    ->Args({1, 3, 1, 0})
+    ->Args({1, 3, 16, 0})
+    ->Args({1, 1, 1, 0})
+    ->Args({3, 3, 1, 0})
+    ->Args({3, 3, 1, 1});
+BENCHMARK(tick_stamps)->Apply(settings)->Args({1, 3, 0, 0})->Args({3, 3, 1, 1});
 
 }  // namespace
 

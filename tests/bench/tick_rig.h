@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "control/build/filters.h"
 #include "control/core/flush_denormals.h"
 #include "daemon/cycle.h"
 
@@ -47,9 +48,10 @@ class MemoryDevice final : public drivers::Device {
 
 class TickRig {
  public:
-  TickRig(std::size_t devices, std::size_t axes, std::size_t planes_per_device)
+  /// `observed`: every axis has an order-2 observer and a low-pass velocity.
+  TickRig(std::size_t devices, std::size_t axes, std::size_t planes_per_device, bool observed)
       : devices_(devices),
-        program_(spec(devices, axes, planes_per_device)),
+        program_(spec(devices, axes, planes_per_device, observed)),
         cycle_(pointers(), program_.plan()),
         storage_(64 * program_.plan().record.bytes),
         ring_(storage_, program_.plan().record.bytes) {
@@ -69,7 +71,7 @@ class TickRig {
 
  private:
   static build::ProgramSpec spec(std::size_t devices, std::size_t axes,
-                                 std::size_t planes_per_device) {
+                                 std::size_t planes_per_device, bool observed) {
     build::ProgramSpec spec;
     spec.axes.assign(devices * axes, {.unit_per_raw = 1e-6,
                                       .offset = -1,
@@ -95,6 +97,17 @@ class TickRig {
                                .stiffness = 1000,
                                .damping = 0.5});
       }
+    }
+    for (std::uint16_t i = 0; observed && i < devices * axes; ++i) {
+      spec.low_passes.push_back(build::low_pass(i, 200, spec.period_s));
+      spec.axis_observers.push_back(build::observer(i, static_cast<std::uint16_t>(i / axes),
+                                                    {.mode = build::ObserverMode::classic,
+                                                     .nominal_mass_kg = 0.1,
+                                                     .nominal_damping_Ns_m = 0.2,
+                                                     .cutoff_Hz = 10,
+                                                     .order = 2,
+                                                     .max_output = 1},
+                                                    spec.period_s));
     }
     return spec;
   }

@@ -95,7 +95,8 @@ TEST(Linkage, ReachIsThatOfTheSingularValuesForEveryShapeOfJacobian) {
 }
 
 TEST(Linkage, ReachOfTheFiveBarIsThatOfTheReferencesCondition) {
-  for (const auto& vector : test::kinematics_data("five_bar")["vectors"]) {
+  const auto reference = test::kinematics_data("five_bar");
+  for (const auto& vector : reference["vectors"]) {
     const double c = vector["condJ"], kappa = c + 1 / c;
     LinkageRig rig(test::five_bar(), {.axes = 2, .coordinates = 2, .max_condition = kappa / 0.7});
     rig.forward(JointAngles{vector["theta"][0], vector["theta"][1]}.data());

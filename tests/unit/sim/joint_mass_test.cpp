@@ -31,7 +31,8 @@ JointMatrix mass_at(const JointMass& mass, const Joints& q) {
 
 TEST(JointMass, OfTheFiveBarIsThatOfTheReference) {
   const JointMass mass = mass_of(five_bar());
-  for (const auto& pose : five_bar_reference()["poses"]) {
+  const auto reference = five_bar_reference();
+  for (const auto& pose : reference["poses"]) {
     JointDynamics at;
     ASSERT_TRUE(mass.dynamics(joints(pose["theta"][0], pose["theta"][1]), Joints::Zero(), at));
     const Eigen::Matrix2d m = at.mass.topLeftCorner<2, 2>();
