@@ -44,6 +44,9 @@ void compare_axis(const config::Axis& a, const config::Axis& b, const std::strin
   found.compare(a.encoder == encoder, key + ".encoder");
   found.compare(a.actuator == actuator, key + ".actuator");
   found.compare(a.homing == b.homing, key + ".homing");
+  // Their efforts would step under the hand: the fade of a swapped plan knows contact forces alone.
+  found.compare(a.observer == b.observer, key + ".observer");
+  found.compare(a.compensation == b.compensation, key + ".compensation");
 }
 
 bool same_stops(const std::optional<sim::StopOptions>& a,
@@ -94,6 +97,8 @@ void compare_device(const config::Device& a, const config::Device& b, const std:
   found.compare(a.driver == b.driver, key + ".driver");
   found.compare(a.kinematics == b.kinematics, key + ".kinematics");
   found.compare(a.pose == b.pose, key + ".pose");
+  found.compare(a.gravity == b.gravity, key + ".gravity");
+  found.compare(a.contact == b.contact, key + ".contact");
   found.compare(a.workspace_scale == b.workspace_scale, key + ".workspace_scale");
   compare_sim(a.sim.value_or(config::Sim{}), b.sim.value_or(config::Sim{}), key, found);
   found.compare(a.axes.size() == b.axes.size(), key + ".axes (their number)");

@@ -8,8 +8,8 @@
 namespace hapticd::daemon {
 
 /// One line for each key that a running daemon cannot change, with the words "disable first";
-/// empty: the new config may be adopted. Scene, guard, models, estimators, observers,
-/// compensations, stability, start and telemetry may change, and latency within a tick.
+/// empty: the new config may be adopted. Scene, guard, models, estimators, stability, start and
+/// telemetry may change, and latency within a tick.
 std::vector<std::string> reload_obstacles(const config::Compiled& running,
                                           const config::Compiled& fresh);
 

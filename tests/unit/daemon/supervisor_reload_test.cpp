@@ -50,7 +50,7 @@ TEST(Reload, NothingChangedIsNoObstacle) {
   EXPECT_THAT(after_config([](auto&) {}), IsEmpty());
 }
 
-TEST(Reload, SceneGuardModelsCompensationsStabilityStartAndTelemetryMayChange) {
+TEST(Reload, SceneGuardModelsEstimatorsStabilityStartAndTelemetryMayChange) {
   EXPECT_THAT(after([](config::Compiled& fresh) {
                 config::Config& c = fresh.document.config;
                 c.scene = {config::Plane{}};
@@ -62,10 +62,7 @@ TEST(Reload, SceneGuardModelsCompensationsStabilityStartAndTelemetryMayChange) {
                 c.devices[0].axes[0].actuator.continuous_force_N = 2;
                 c.devices[0].axes[0].actuator.thermal_time_s = 5;
                 c.devices[0].axes[0].velocity.estimator = config::Estimator::low_pass;
-                c.devices[0].axes[0].observer.mode = config::ObserverMode::model;
-                c.devices[0].axes[0].compensation.coulomb_share = 0.5;
                 c.devices[0].axes[0].travel = config::Travel{};
-                c.devices[0].gravity = config::Gravity{};
                 c.devices[0].enable_inputs = {config::EnableInput{}};
                 c.stability.require = config::Require::none;
                 c.start.enable = config::EnableWhen::when_ready;
@@ -73,6 +70,17 @@ TEST(Reload, SceneGuardModelsCompensationsStabilityStartAndTelemetryMayChange) {
                 fresh.simulated[0].ramp_s = 0.1;
               }),
               IsEmpty());
+}
+
+TEST(Reload, EffortsBesideTheContactForceWouldStep) {
+  EXPECT_THAT(after_config([](auto& c) {
+                c.devices[0].axes[0].observer.mode = config::ObserverMode::model;
+              }),
+              refused_for("devices[0].axes[0].observer"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].axes[0].compensation.coulomb_share = 0.5; }),
+              refused_for("devices[0].axes[0].compensation"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].gravity = config::Gravity{}; }),
+              refused_for("devices[0].gravity"));
 }
 
 TEST(Reload, TheLoopNeedsARestart) {
