@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,13 @@
 
 namespace hapticd::config {
 
+/// Objects that a device feels and that a proof has to know by name: "sphere 'ball'".
+struct FeltObjects {
+  std::vector<std::string> moving;
+  std::vector<std::string> swinging;
+  std::vector<std::string> nonconvex;  ///< their free side, or their potential, is
+};
+
 class Compilation {
  public:
   explicit Compilation(const Document& document) : config(document.config), document_(document) {}
@@ -23,8 +31,12 @@ class Compilation {
   const Config& config;
   build::ProgramSpec spec;
   std::vector<sim::DeviceOptions> simulated;
+  std::optional<sim::SharedHandOptions> shared_hand;
+  std::vector<FeltObjects> felt;  ///< per device
   std::vector<check::DeviceAssumption> assumed;
   std::vector<ConfigError> errors;
+
+  const Document& document() const { return document_; }
 
  private:
   const Document& document_;
@@ -67,11 +79,24 @@ void compile_guard(Compilation& compilation, const DevicePlace& place);
 void compile_simulated(Compilation& compilation, const DevicePlace& place);
 /// Refuses a cutoff of half the rate or more, at `path`.cutoff_Hz.
 void check_cutoff(Compilation& compilation, const std::string& path, double cutoff_Hz);
+/// Of all devices; what follows knows what it names.
+void compile_coupling(Compilation& compilation);
 void compile_scene(Compilation& compilation, const std::vector<DevicePlace>& places);
+/// Where the scene or a coupling needs them.
+void compile_contacts(Compilation& compilation, const std::vector<DevicePlace>& places);
+/// How much sharper the descent check has to be under latency.
+void compile_sharpening(Compilation& compilation, const std::vector<DevicePlace>& places);
+void compile_shared_hand(Compilation& compilation);
 /// What the stability check may assume of each device, and what keeps it from a proof.
 void compile_assumptions(Compilation& compilation, const std::vector<DevicePlace>& places);
+/// Of a designed coupling, held against what is compiled; fills the last two of `compiled`.
+void compile_certificate(Compiled& compiled);
 /// Relative paths are relative to the config's directory.
 void resolve_paths(Config& config, const std::string& config_path);
 void check_paths(Compilation& compilation);
+/// Of the file that `document.config.coupling` names, into it. Empty: it is sound.
+std::vector<ConfigError> read_coupling(Document& document);
+/// Of all model files that axes of `document.config` name, into them.
+std::vector<ConfigError> read_models(Document& document);
 
 }  // namespace hapticd::config

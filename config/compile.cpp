@@ -50,6 +50,17 @@ void make_relative_to(const std::filesystem::path& directory, std::string& path)
   path = (directory / path).lexically_normal().string();
 }
 
+/// All that devices have in common.
+void compile_world(Compilation& compilation, const std::vector<DevicePlace>& places) {
+  compilation.felt.resize(places.size());
+  compile_coupling(compilation);
+  compile_scene(compilation, places);
+  compile_shared_hand(compilation);
+  if (!compilation.errors.empty()) return;
+  compile_contacts(compilation, places);
+  compile_sharpening(compilation, places);
+}
+
 void compile_all(Compilation& compilation) {
   check_capacities(compilation);
   if (!compilation.errors.empty()) return;  // the rest would say it again, once for each axis
@@ -68,19 +79,44 @@ void compile_all(Compilation& compilation) {
     compile_guard(compilation, place);
     compile_simulated(compilation, place);
   }
-  if (compilation.errors.empty()) compile_scene(compilation, places);
+  if (compilation.errors.empty()) compile_world(compilation, places);
   compile_assumptions(compilation, places);
+}
+
+}  // namespace
+
+namespace {
+
+/// Where in which file a value of the config stands.
+struct Origin {
+  std::string file;
+  const Places* places = nullptr;
+  std::string path;  ///< within the file
+};
+
+Origin origin_of(const Document& document, const std::string& path) {
+  constexpr std::string_view coupling = "coupling.";
+  if (document.coupling_places && path.starts_with(coupling) && path != "coupling.file") {
+    return {*document.config.coupling->file, document.coupling_places.get(),
+            path.substr(coupling.size())};
+  }
+  for (const NamedModel& model : document.models) {
+    if (path.starts_with(model.path + "."))
+      return {model.file, model.places.get(), path.substr(model.path.size() + 1)};
+  }
+  return {document.path, document.places.get(), path};
 }
 
 }  // namespace
 
 void Compilation::refuse(const std::string& path, std::string message) {
   if (errors.size() >= kMaxErrors) return;
-  const Mark mark = document_.places ? document_.places->find(path) : Mark{};
-  errors.push_back({.file = document_.path,
+  Origin origin = origin_of(document_, path);
+  const Mark mark = origin.places != nullptr ? origin.places->find(origin.path) : Mark{};
+  errors.push_back({.file = std::move(origin.file),
                     .line = mark.line,
                     .column = mark.column,
-                    .path = path,
+                    .path = std::move(origin.path),
                     .message = std::move(message)});
 }
 
@@ -139,6 +175,15 @@ void resolve_paths(Config& config, const std::string& config_path) {
   make_relative_to(directory, config.control.socket);
   make_relative_to(directory, config.telemetry.flight_dir);
   if (config.telemetry.record) make_relative_to(directory, *config.telemetry.record);
+  if (config.coupling && config.coupling->file) make_relative_to(directory, *config.coupling->file);
+  for (Device& device : config.devices) {
+    for (Axis& axis : device.axes) {
+      if (axis.model && axis.model->file) make_relative_to(directory, *axis.model->file);
+    }
+  }
+  for (SceneObject& object : config.scene) {
+    if (auto* mesh = std::get_if<Mesh>(&object)) make_relative_to(directory, mesh->file);
+  }
 }
 
 void check_paths(Compilation& compilation) {
@@ -159,14 +204,21 @@ void check_paths(Compilation& compilation) {
 
 Checked<Compiled> compile(Document document) {
   resolve_paths(document.config, document.path);
+  const std::optional<Coupling>& coupling = document.config.coupling;
+  if (coupling && coupling->file && !document.coupling_places) {
+    if (auto errors = read_coupling(document); !errors.empty()) return tl::unexpected(errors);
+  }
+  if (auto errors = read_models(document); !errors.empty()) return tl::unexpected(errors);
   Compilation compilation(document);
   compile_all(compilation);
   if (!compilation.errors.empty()) return tl::unexpected(std::move(compilation.errors));
   Compiled compiled;
   compiled.program = std::make_unique<build::Program>(std::move(compilation.spec));
   compiled.simulated = std::move(compilation.simulated);
+  compiled.shared_hand = std::move(compilation.shared_hand);
   compiled.assumed = std::move(compilation.assumed);
   compiled.document = std::move(document);
+  compile_certificate(compiled);
   return compiled;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,29 @@
 #include "control/design/check/stability.h"
 #include "sim/options.h"
 
+namespace hapticd::check {
+struct Certificate;
+}
+
 namespace hapticd::config {
 
 class Places;
+
+/// What `hapticctl design` wrote into the coupling file beside the coupling.
+struct DesignedCoupling {
+  std::optional<Assumed> assumed{};
+  std::optional<CouplingCertificate> certificate{};
+  std::string digest{};  ///< as written
+  std::string actual_digest{};
+};
+
+/// A model file that a config names.
+struct NamedModel {
+  std::string path;  ///< of the model in the config: "devices[0].axes[1].model"
+  std::string file;
+  std::shared_ptr<const Places> places{};
+  std::optional<Measurement> measured{};
+};
 
 /// A file as read: the struct, its exact text and a digest of the text (recordings carry both).
 struct Document {
@@ -24,6 +45,10 @@ struct Document {
   Config config{};
   std::shared_ptr<const Places>
       places{};  ///< line and column of each value, for errors; empty: not from a file
+  /// Likewise, of the coupling file; empty: the coupling is not from a file of its own.
+  std::shared_ptr<const Places> coupling_places{};
+  std::optional<DesignedCoupling> designed{};
+  std::vector<NamedModel> models{};  ///< files of models, once compile() has read them
 };
 
 /// All that a run needs. `simulated[i]` belongs to device i.
@@ -31,7 +56,11 @@ struct Compiled {
   Document document;
   std::unique_ptr<build::Program> program;
   std::vector<sim::DeviceOptions> simulated;
+  std::optional<sim::SharedHandOptions> shared_hand;  ///< of the simulated devices
   std::vector<check::DeviceAssumption> assumed;
+  /// Of a designed coupling; the check goes by it only as far as it holds.
+  std::shared_ptr<const check::Certificate> certificate;
+  std::string certificate_problem;  ///< why the file's certificate does not count; empty: it does
 };
 
 /// Reads one file strictly: every error of the file at once, or the document.
@@ -39,8 +68,12 @@ Checked<Document> read_file(const std::string& path);
 /// The same from text; `path` only names it in errors.
 Checked<Document> read_text(std::string text, const std::string& path);
 
-/// Checks what needs more than one key (names, references, capacities) and builds the program.
+/// Reads the files that the config names, checks what needs more than one key (names, references,
+/// capacities) and builds the program.
 Checked<Compiled> compile(Document document);
+
+/// What a coupling that is designed for this config assumes of it.
+Assumed assumptions(const Compiled& compiled);
 
 /// read_file and compile.
 Checked<Compiled> load(const std::string& path);

@@ -1,20 +1,44 @@
-// What the stability check may assume of each device, and why its closed form does not hold where
-// it does not. That is proved for held forces of planes and springs on devices whose Jacobian is
-// constant, with velocities by the backward difference (control/design/check/stability.h).
+// What the stability check may assume of each device, and what the plan does not say of it: names of
+// objects, and velocities that are not backward differences, which no theorem of
+// control/design/check/stability.h knows. All other premises are checked there, on the plan.
 #include <algorithm>
 #include <string>
 
 #include "config/compilation.h"
+#include "config/coordinates.h"
 #include "config/describe.h"
+#include "config/device_groups.h"
 
 namespace hapticd::config {
 namespace {
 
-/// Does a plane with damping act on the contact of this device?
+/// Is a coordinate of this device without a coupling?
+bool is_direct(const build::ProgramSpec& spec, const DevicePlace& place) {
+  const auto holds = [&](const build::CouplingBlock& block, std::size_t coordinate) {
+    return std::find(block.coordinates.begin(), block.coordinates.end(), coordinate) !=
+           block.coordinates.end();
+  };
+  for (std::size_t i = 0; i < place.frame.directions.size(); ++i) {
+    const auto held = [&](const auto& block) { return holds(block, place.coordinate(i)); };
+    if (std::none_of(spec.coupling.begin(), spec.coupling.end(), held)) return true;
+  }
+  return false;
+}
+
+/// Does damping act on the contact of this device by the velocity of its axes? Behind a coupling it
+/// is the proxy's backward difference.
 bool feels_damping(const build::ProgramSpec& spec, const DevicePlace& place) {
-  return std::any_of(spec.planes.begin(), spec.planes.end(), [&](const control::PlaneContact& p) {
+  const auto plane_damps = [&](const control::PlaneContact& p) {
     return p.first_coordinate == place.first_coordinate && p.damping > 0;
-  });
+  };
+  const auto object_damps = [&](const control::Encounter& e) {
+    if (e.contact != place.index) return false;
+    return e.kind == control::ObjectKind::viscous ? spec.viscous_fields[e.shape].damping > 0
+                                                  : e.surface.damping > 0;
+  };
+  return std::any_of(spec.planes.begin(), spec.planes.end(), plane_damps) ||
+         (is_direct(spec, place) &&
+          std::any_of(spec.encounters.begin(), spec.encounters.end(), object_damps));
 }
 
 /// A device all of whose axes have a model: the least damping of each.
@@ -25,14 +49,6 @@ std::vector<double> min_damping(const DevicePlace& place) {
     damping.push_back(axis.model->least_damping());
   }
   return damping;
-}
-
-bool has_observer(const Device& device) {
-  const auto is_on = [](const auto& at) { return at.observer.mode != ObserverMode::off; };
-  const Contact& contact = device.contact;
-  return std::any_of(device.axes.begin(), device.axes.end(), is_on) ||
-         (contact.x && is_on(*contact.x)) || (contact.y && is_on(*contact.y)) ||
-         (contact.z && is_on(*contact.z));
 }
 
 /// Axes whose velocity is estimated otherwise and matters to a force.
@@ -52,30 +68,60 @@ std::string estimator_obstacle(const build::ProgramSpec& spec, const DevicePlace
 
 std::vector<std::string> obstacles(const build::ProgramSpec& spec, const DevicePlace& place) {
   std::vector<std::string> found;
-  if (!std::holds_alternative<Cartesian>(place.device.kinematics)) {
-    const auto kind = [](const auto& of) {
-      return std::string(kKindOf<std::decay_t<decltype(of)>>);
-    };
-    found.push_back(std::visit(kind, place.device.kinematics) +
-                    ": torques are held, not forces, so it needs the condition in joint space "
-                    "over the whole workspace, which is not checked yet");
-  }
-  if (has_observer(place.device)) {
-    found.emplace_back("a disturbance observer is on; the closed form knows the device without it");
-  }
   if (std::string text = estimator_obstacle(spec, place); !text.empty())
     found.push_back(std::move(text));
   return found;
 }
 
+/// Objects that give energy of their own.
+std::vector<check::ObjectNote> active(const FeltObjects& felt) {
+  std::vector<check::ObjectNote> found;
+  for (const std::string& label : felt.moving)
+    found.push_back({label, "moves: what it gives is booked, not bounded beforehand"});
+  for (const std::string& label : felt.swinging)
+    found.push_back({label, "drives the hand: what it gives is booked, not bounded beforehand"});
+  return found;
+}
+
+bool has_mass(const build::Network& network) {
+  return std::any_of(network.nodes.begin(), network.nodes.end(),
+                     [](const build::NetworkNode& node) { return node.mass > 0; });
+}
+
+/// Do the devices of a group touch masses? They keep energy that only convex objects are sure to
+/// leave alone.
+bool touches_masses(const Compilation& compilation, std::size_t group,
+                    const std::vector<std::size_t>& groups) {
+  const auto of_group = [&](const build::Network& network) {
+    for (const build::NetworkElement& element : network.elements) {
+      for (const build::NetworkEnd& end : {element.a, element.b}) {
+        if (end.at == build::NetworkEnd::At::coordinate)
+          return groups[device_of(compilation, end.index)] == group;
+      }
+    }
+    return false;
+  };
+  const auto& networks = compilation.spec.networks;
+  return std::any_of(networks.begin(), networks.end(), [&](const build::Network& network) {
+    return has_mass(network) && of_group(network);
+  });
+}
+
 }  // namespace
 
 void compile_assumptions(Compilation& compilation, const std::vector<DevicePlace>& places) {
+  if (!compilation.errors.empty()) return;
+  const std::vector<std::size_t> groups = device_groups(compilation);
   for (const DevicePlace& place : places) {
-    compilation.assumed.push_back({.name = place.device.name,
-                                   .latency_s = place.device.latency_s,
-                                   .min_damping = min_damping(place),
-                                   .obstacles = obstacles(compilation.spec, place)});
+    const FeltObjects& felt = compilation.felt[place.index];
+    compilation.assumed.push_back(
+        {.name = place.device.name,
+         .latency_s = place.device.latency_s,
+         .min_damping = min_damping(place),
+         .obstacles = obstacles(compilation.spec, place),
+         .active = active(felt),
+         .nonconvex = felt.nonconvex,
+         .heavy_network = touches_masses(compilation, groups[place.index], groups)});
   }
 }
 

@@ -42,6 +42,23 @@ void check_latency(Compilation& compilation, const DevicePlace& place) {
                          format_number(place.device.latency_s) + " s; lower loop.rate_Hz");
 }
 
+/// A delay that was measured, and surely is longer than the latency that all checks assume.
+void check_measured_delays(Compilation& compilation, const DevicePlace& place) {
+  for (const NamedModel& model : compilation.document().models) {
+    if (!model.measured || !model.path.starts_with(place.path + ".")) continue;
+    const Measurement& measured = *model.measured;
+    const double surely_s = measured.delay_s - measured.delay_uncertainty_s;
+    if (place.device.latency_s >= surely_s) continue;
+    compilation.refuse(
+        place.path + ".latency_s",
+        "expected at least the delay that was measured, " + format_number(measured.delay_s) +
+            " +- " + format_number(measured.delay_uncertainty_s) + " s (" + model.file +
+            "), found " + format_number(place.device.latency_s) + " s: raise it to " +
+            format_number(measured.delay_s + measured.delay_uncertainty_s) +
+            " and what the loop may wake late, or identify the axis anew");
+  }
+}
+
 }  // namespace
 
 DevicePlace device_place(Compilation& compilation, std::size_t index) {
@@ -66,6 +83,7 @@ DevicePlace device_place(Compilation& compilation, std::size_t index) {
 void compile_device(Compilation& compilation, const DevicePlace& place) {
   check_force_limit(compilation, place);
   check_latency(compilation, place);
+  check_measured_delays(compilation, place);
   build::ProgramSpec& spec = compilation.spec;
   const EffectiveGuard& guard = place.guard;
   const double scale = place.frame.scale;

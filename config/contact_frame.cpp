@@ -4,49 +4,15 @@
 #include <cmath>
 
 #include "config/compilation.h"
-#include "config/number.h"
+#include "config/geometry.h"
 
 namespace hapticd::config {
 namespace {
 
-/// Entries of a rotation this near to 0 or 1 are meant to be that: rounding, not geometry.
+/// Entries of a rotation this near to 0 are meant to be that: rounding, not geometry.
 constexpr double kRounding = 1e-12;
-/// A quaternion this far from length 1 is a mistake, not a rounded number.
-constexpr double kMaxLengthError = 0.01;
 
 constexpr std::array<Vector3, 3> kUnit{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-double snapped(double entry) {
-  const double whole = std::round(entry);
-  return std::abs(entry - whole) < kRounding ? whole : entry;
-}
-
-/// Of a unit quaternion w, x, y, z.
-Matrix3 rotation_of(const std::array<double, 4>& q) {
-  const auto [w, x, y, z] = q;
-  Matrix3 rotation{{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                    {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                    {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-  for (Vector3& row : rotation) {
-    for (double& entry : row) entry = snapped(entry);
-  }
-  return rotation;
-}
-
-Matrix3 rotation_of(Compilation& compilation, const Pose& pose, const std::string& path) {
-  std::array<double, 4> q = pose.rotation_quaternion;
-  double square = 0;
-  for (const double part : q) square += part * part;
-  const double length = std::sqrt(square);
-  if (std::abs(length - 1) > kMaxLengthError) {
-    compilation.refuse(path + ".rotation_quaternion",
-                       "expected w, x, y, z of length 1, found length " + format_number(length) +
-                           "; no rotation is [1, 0, 0, 0]");
-    return kUnit;
-  }
-  for (double& part : q) part /= length;
-  return rotation_of(q);
-}
 
 std::vector<Vector3> motions_of(const Cartesian& cartesian) {
   std::vector<Vector3> motions;
@@ -100,7 +66,8 @@ Vector3 ContactFrame::into_device(const Vector3& world) const {
 ContactFrame contact_frame(Compilation& compilation, const Device& device,
                            const std::string& device_path) {
   ContactFrame frame;
-  frame.rotation = rotation_of(compilation, device.pose, device_path + ".pose");
+  frame.rotation = rotation_of(unit_quaternion(compilation, device.pose.rotation_quaternion,
+                                               device_path + ".pose.rotation_quaternion"));
   frame.position = device.pose.position_m;
   frame.scale = device.workspace_scale;
   frame.motions = std::visit([](const auto& kind) { return motions_of(kind); }, device.kinematics);

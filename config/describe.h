@@ -1,16 +1,19 @@
 // What each key of a config is: name, needed or not, range, unit, meaning. One description per
 // struct of schema.h; the reader, the JSON schema and the man page's key table are visitors of it.
-// The default of a key is what its struct has. Devices, axes and simulations have files of their own.
+// The default of a key is what its struct has. Devices, axes, simulations, couplings, scenes have
+// files of their own.
 //
 // A visitor offers
 //   template <class T> void required(const char* key, T& field, const Key& about);
 //   template <class T> void optional(const char* key, T& field, const Key& about);
 //
-// A new kind of scene object: a struct in schema.h, its place in SceneObject, a describe() here,
-// its kKindOf in key.h, and the lines in compile_scene.cpp that turn it into an array of the plan.
+// A new kind of scene object: see README.md.
 #pragma once
 #include "config/describe_axis.h"
+#include "config/describe_coupling.h"
 #include "config/describe_device.h"
+#include "config/describe_field.h"
+#include "config/describe_scene.h"
 #include "config/describe_sim.h"
 #include "config/key.h"
 #include "config/schema.h"
@@ -44,29 +47,6 @@ void describe(V& v, Start& s) {
 }
 
 template <class V>
-void describe(V& v, Plane& s) {
-  v.required("name", s.name,
-             {.about = "of the object, unique in the scene", .form = TextForm::name});
-  v.optional("devices", s.devices,
-             {.about = "which devices feel it; empty: all",
-              .form = TextForm::name,
-              .max_items = kMaxDevices});
-  v.required("normal", s.normal,
-             {.about = "towards the free side, in world directions x, y, z; any length but 0",
-              .min = -1e6,
-              .max = 1e6});
-  v.optional("offset_m", s.offset_m,
-             {.about = "distance of the surface from the origin, along the normal",
-              .min = -100,
-              .max = 100,
-              .unit = "m"});
-  v.required("stiffness_N_m", s.stiffness_N_m,
-             {.about = "of the wall", .min = 0, .max = 1e7, .unit = "N/m"});
-  v.optional("damping_Ns_m", s.damping_Ns_m,
-             {.about = "of the wall, while it pushes", .min = 0, .max = 1e5, .unit = "N s/m"});
-}
-
-template <class V>
 void describe(V& v, Stability& s) {
   v.optional(
       "require", s.require,
@@ -97,9 +77,13 @@ void describe(V& v, Config& s) {
   v.optional("start", s.start, {.about = "what happens at start"});
   v.required("devices", s.devices,
              {.about = "what is driven", .min_items = 1, .max_items = kMaxDevices});
+  v.optional("coupling", s.coupling,
+             {.about = "virtual springs and dampers between the contacts and what they touch; "
+                       "null: the scene is felt directly"});
   v.optional("scene", s.scene,
              {.about = "what can be touched; each entry is a map with one key, the kind",
               .max_items = kMaxObjects});
+  v.optional("sim", s.sim, {.about = "what simulated devices share"});
   v.optional("stability", s.stability, {.about = "what is demanded of the scene"});
   v.optional("guard", s.guard, {.about = "limits of every device"});
   v.optional("control", s.control, {.about = "how the daemon is talked to"});

@@ -1,29 +1,12 @@
 // What each key of an axis is; part of config/describe.h.
 #pragma once
+#include "config/describe_model.h"
 #include "config/key.h"
+#include "config/key_forms.h"
 #include "config/schema_axis.h"
 #include "control/core/capacity.h"
 
 namespace hapticd::config {
-
-/// One form of a key that has a linear and a rotary one.
-template <class T>
-struct FormOf {
-  const char* name;
-  T& field;
-  const char* unit;
-};
-template <class T>
-FormOf(const char*, T&, const char*) -> FormOf<T>;
-
-/// Both forms: the same range, in their units.
-template <class V, class T>
-void both(V& v, FormOf<T> linear, FormOf<T> rotary, Key key) {
-  key.unit = linear.unit;
-  v.optional(linear.name, linear.field, key);
-  key.unit = rotary.unit;
-  v.optional(rotary.name, rotary.field, key);
-}
 
 template <class V>
 void describe(V& v, Encoder& s) {
@@ -67,27 +50,6 @@ void describe(V& v, Actuator& s) {
               .min = 0.1,
               .max = 10'000,
               .unit = "s"});
-}
-
-template <class V>
-void describe(V& v, AxisModel& s) {
-  both(v, FormOf{"mass_kg", s.mass_kg, "kg"}, FormOf{"inertia_kgm2", s.inertia_kgm2, "kg m^2"},
-       {.about = "moving mass or inertia, as identified; one of them is required",
-        .min = 0,
-        .max = 1000,
-        .above_min = true});
-  both(v, FormOf{"damping_Ns_m", s.damping_Ns_m, "N s/m"},
-       FormOf{"damping_Nms_rad", s.damping_Nms_rad, "N m s/rad"},
-       {.about = "viscous damping, as identified; one of them is required", .min = 0, .max = 1e5});
-  both(v, FormOf{"coulomb_N", s.coulomb_N, "N"}, FormOf{"coulomb_Nm", s.coulomb_Nm, "N m"},
-       {.about = "dry friction, as identified; null: 0", .min = 0, .max = 1000});
-  v.optional(
-      "mass_uncertainty", s.mass_uncertainty,
-      {.about = "share: the true mass or inertia lies within (1 +- this)", .min = 0, .max = 1});
-  v.optional("damping_uncertainty", s.damping_uncertainty,
-             {.about = "share: the true damping lies within (1 +- this); proofs use the least",
-              .min = 0,
-              .max = 1});
 }
 
 template <class V>

@@ -245,6 +245,11 @@ void describe(V& v, Device& s) {
              {.about = "the contact moves this much in the world where the hand moves 1",
               .min = 0.001,
               .max = 1000});
+  v.optional("tool_radius_m", s.tool_radius_m,
+             {.about = "in the world: the tool is a ball of this radius; 0: a point",
+              .min = 0,
+              .max = 10,
+              .unit = "m"});
   v.required("latency_s", s.latency_s,
              {.about = "worst time from sample to force that the proof assumes",
               .min = 0,

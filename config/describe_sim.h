@@ -1,6 +1,7 @@
 // What each key of a simulated device is; part of config/describe.h.
 #pragma once
 #include "config/describe_axis.h"
+#include "config/describe_coupling.h"
 #include "config/key.h"
 #include "config/schema_sim.h"
 #include "control/core/capacity.h"
@@ -134,6 +135,26 @@ void describe(V& v, Sim& s) {
               .max_items = 1000});
   v.optional("failures", s.failures,
              {.about = "what goes wrong, for rehearsals", .max_items = 1000});
+}
+
+template <class V>
+void describe(V& v, SharedHand& s) {
+  describe_contacts(v, s.contacts);
+  v.required("state_space", s.state_space,
+             {.about = "in continuous time, velocities in m/s to the forces in N against them"});
+  v.optional("velocity_m_s", s.velocity_m_s,
+             {.about = "of each of its coordinates at the start; empty: at rest",
+              .min = -100,
+              .max = 100,
+              .unit = "m/s",
+              .max_items = kMaxCoordinates});
+}
+
+template <class V>
+void describe(V& v, Simulation& s) {
+  v.optional("hand", s.hand,
+             {.about = "holds contacts of several Cartesian devices, beside their own hands; null: "
+                       "none"});
 }
 
 }  // namespace hapticd::config

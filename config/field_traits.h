@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "config/schema_coupling.h"
+
 namespace hapticd::config {
 
 template <class T>
@@ -39,10 +41,13 @@ inline constexpr bool kIsWhole = std::is_integral_v<T> && !kIsBool<T>;
 template <class T>
 inline constexpr bool kIsReal = std::is_floating_point_v<T>;
 
+template <class T>
+inline constexpr bool kIsGains = std::is_same_v<T, Gains>;
+
 /// A struct that has a describe().
 template <class T>
 inline constexpr bool kIsStruct = std::is_class_v<T> && !kIsText<T> && !kIsOptional<T> &&
-                                  !kIsVector<T> && !kIsArray<T> && !kIsVariant<T>;
+                                  !kIsVector<T> && !kIsArray<T> && !kIsVariant<T> && !kIsGains<T>;
 
 /// Calls `action(Alternative{})` for every alternative of a variant type.
 template <class Variant, class Action>

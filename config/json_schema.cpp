@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <variant>
 
 #include "config/describe.h"
 #include "config/field_traits.h"
@@ -88,7 +89,21 @@ Json list_schema(const Key& key, std::size_t min_items, std::size_t max_items) {
 template <class T>
 Json nullable_schema(const Key& key) {
   Json schema = schema_of<T>(key);
-  schema["type"] = Json::array({schema["type"], "null"});
+  if (!schema["type"].is_array()) schema["type"] = Json::array({schema["type"]});
+  schema["type"].push_back("null");
+  return schema;
+}
+
+/// A number, a list or a matrix: what is said of each type holds where the value is of that type.
+Json gains_schema(const Key& key) {
+  Json row = list_schema<double>(key, key.min_items, key.max_items);
+  Json schema = number_schema<double>(key, "number");
+  schema["type"] = Json::array({"number", "array"});
+  Json item = schema;
+  item.update(
+      Json{{"items", row["items"]}, {"minItems", key.min_items}, {"maxItems", key.max_items}});
+  schema.update(
+      Json{{"items", std::move(item)}, {"minItems", key.min_items}, {"maxItems", key.max_items}});
   return schema;
 }
 
@@ -124,6 +139,7 @@ Json schema_of(const Key& key) {
   } else if constexpr (kIsText<T>) {
     Json schema = {{"type", "string"}};
     if (key.form == TextForm::name) schema["pattern"] = kNamePattern;
+    if (key.form == TextForm::coordinate) schema["pattern"] = kCoordinatePattern;
     return schema;
   } else if constexpr (std::is_enum_v<T>) {
     return {{"type", "string"}, {"enum", Words<T>::list}};
@@ -131,6 +147,8 @@ Json schema_of(const Key& key) {
     return list_schema<typename T::value_type>(key, key.min_items, key.max_items);
   } else if constexpr (kIsArray<T>) {
     return list_schema<typename T::value_type>(key, T{}.size(), T{}.size());
+  } else if constexpr (kIsGains<T>) {
+    return gains_schema(key);
   } else if constexpr (kIsVariant<T>) {
     return variant_schema<T>();
   } else {
@@ -153,6 +171,8 @@ Json default_of(const T& value) {
       for (const auto& item : value) list.push_back(default_of(item));
     }
     return list;
+  } else if constexpr (kIsGains<T>) {
+    return std::visit([](const auto& form) { return default_of(form); }, value.value);
   } else if constexpr (kIsStruct<T>) {
     DefaultWriter writer;
     T defaults = value;

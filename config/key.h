@@ -11,9 +11,14 @@
 namespace hapticd::config {
 
 /// What a text may be.
-enum class TextForm { any, name };
-/// Pattern of TextForm::name.
+enum class TextForm {
+  any,
+  name,        ///< left
+  coordinate,  ///< left or left.x
+};
+// Their patterns.
 inline constexpr const char* kNamePattern = "^[a-z][a-z0-9_]*$";
+inline constexpr const char* kCoordinatePattern = "^[a-z][a-z0-9_]*([.][xyz])?$";
 
 /// All about one key but its type, which the field has, and its default, which the struct has.
 struct Key {
@@ -38,6 +43,10 @@ struct Words<EnableWhen> {
 template <>
 struct Words<AxisKind> {
   static constexpr std::array<std::string_view, 2> list{"linear", "rotary"};
+};
+template <>
+struct Words<Excited> {
+  static constexpr std::array<std::string_view, 2> list{"stepped", "chirp"};
 };
 template <>
 struct Words<Estimator> {
@@ -66,12 +75,26 @@ struct Words<SimFailureKind> {
                                                         "disarm", "fault", "slow"};
 };
 template <>
+struct Words<Profile> {
+  static constexpr std::array<std::string_view, 2> list{"sinusoid", "groove"};
+};
+template <>
+struct Words<FreeSide> {
+  static constexpr std::array<std::string_view, 2> list{"outside", "inside"};
+};
+template <>
 struct Words<Driver> {
   static constexpr std::array<std::string_view, 1> list{"sim"};
 };
 template <>
 struct Words<Require> {
   static constexpr std::array<std::string_view, 2> list{"passive", "none"};
+};
+
+template <>
+struct Words<check::CertificateKind> {
+  static constexpr std::array<std::string_view, 3> list{"passive_closed_form", "passive_lmi",
+                                                        "sampled_exact"};
 };
 
 /// The word for an enumeration's value.
@@ -85,6 +108,36 @@ template <class T>
 inline constexpr const char* kKindOf = nullptr;
 template <>
 inline constexpr const char* kKindOf<Plane> = "plane";
+template <>
+inline constexpr const char* kKindOf<Texture> = "texture";
+template <>
+inline constexpr const char* kKindOf<Box> = "box";
+template <>
+inline constexpr const char* kKindOf<Sphere> = "sphere";
+template <>
+inline constexpr const char* kKindOf<Cylinder> = "cylinder";
+template <>
+inline constexpr const char* kKindOf<Capsule> = "capsule";
+template <>
+inline constexpr const char* kKindOf<Mesh> = "mesh";
+template <>
+inline constexpr const char* kKindOf<PointGuide> = "point";
+template <>
+inline constexpr const char* kKindOf<LineGuide> = "line";
+template <>
+inline constexpr const char* kKindOf<CurveGuide> = "curve";
+template <>
+inline constexpr const char* kKindOf<Viscous> = "viscous";
+template <>
+inline constexpr const char* kKindOf<Constant> = "constant";
+template <>
+inline constexpr const char* kKindOf<Detents> = "detents";
+template <>
+inline constexpr const char* kKindOf<Magnet> = "magnet";
+template <>
+inline constexpr const char* kKindOf<Vibration> = "vibration";
+template <>
+inline constexpr const char* kKindOf<Network> = "network";
 template <>
 inline constexpr const char* kKindOf<Cartesian> = "cartesian";
 template <>

@@ -1,6 +1,8 @@
 #include "config/man_keys.h"
 
+#include <array>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "config/describe.h"
@@ -45,9 +47,12 @@ std::string type_text(const Key& key) {
   } else if constexpr (kIsBool<T>) {
     return "true | false";
   } else if constexpr (kIsText<T>) {
-    return key.form == TextForm::name ? "name" : "text";
+    constexpr std::array forms{"text", "name", "name, or name with direction"};
+    return forms[static_cast<std::size_t>(key.form)];
   } else if constexpr (std::is_enum_v<T>) {
     return words_of<T>();
+  } else if constexpr (kIsGains<T>) {
+    return with_detail("number, list or matrix", range_text(key));
   } else if constexpr (kIsVector<T>) {
     return with_detail("list of", count_text(key)) +
            ", each: " + type_text<typename T::value_type>(key);
@@ -71,6 +76,8 @@ std::string default_text(const T& value) {
     return value;
   } else if constexpr (std::is_enum_v<T>) {
     return std::string(word_of(value));
+  } else if constexpr (kIsGains<T>) {
+    return default_text(std::get<double>(value.value));
   } else if constexpr (kIsVector<T>) {
     return "empty";
   } else if constexpr (kIsArray<T>) {
@@ -136,7 +143,10 @@ std::string man_keys() {
   ManWriter writer("");
   Config defaults;
   describe(writer, defaults);
-  return writer.finish();
+  ManWriter file("coupling file");
+  CouplingFile designed;
+  describe_designed(file, designed);
+  return writer.finish() + file.finish();
 }
 
 }  // namespace hapticd::config

@@ -13,7 +13,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-char lower(char c) {
+char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
@@ -50,10 +50,11 @@ bool is_decimal(std::string_view text) {
 bool is_prefixed(std::string_view text) {
   text = magnitude(text);
   if (text.size() < 3 || text[0] != '0') return false;
-  const char base = lower(text[1]);
+  const char base = lower_case(text[1]);
   if (base != 'x' && base != 'o' && base != 'b') return false;
-  return std::all_of(text.begin() + 2, text.end(),
-                     [](char c) { return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'f'); });
+  return std::all_of(text.begin() + 2, text.end(), [](char c) {
+    return is_digit(c) || (lower_case(c) >= 'a' && lower_case(c) <= 'f');
+  });
 }
 
 bool has_leading_zero(std::string_view text) {
@@ -66,7 +67,7 @@ std::string_view non_finite_name(std::string_view text) {
   text = magnitude(text);
   if (!text.empty() && text[0] == '.') text.remove_prefix(1);
   std::string word(text.substr(0, 9));
-  std::transform(word.begin(), word.end(), word.begin(), lower);
+  std::transform(word.begin(), word.end(), word.begin(), lower_case);
   if (word == "nan") return "NaN";
   if (word == "inf" || word == "infinity") return "infinity";
   return {};

@@ -7,6 +7,7 @@
 #include "config/effective_guard.h"
 #include "config/number.h"
 #include "config/print_axis.h"
+#include "config/print_world.h"
 
 namespace hapticd::config {
 namespace {
@@ -98,15 +99,6 @@ std::string device_text(const Compiled& compiled, std::size_t index) {
          assumed_text(compiled.assumed[index], rotary);
 }
 
-std::string object_text(const Config& config, const Plane& plane) {
-  const std::string felt_by = plane.devices.empty()
-                                  ? joined(config.devices, [](const Device& d) { return d.name; })
-                                  : joined(plane.devices, [](const std::string& n) { return n; });
-  return "plane " + plane.name + ": normal [" + joined(plane.normal, format_number) + "], offset " +
-         with_unit(plane.offset_m, "m") + ", " + with_unit(plane.stiffness_N_m, "N/m") + ", " +
-         with_unit(plane.damping_Ns_m, "N s/m") + ", felt by " + felt_by + "\n";
-}
-
 std::string files_text(const Config& config) {
   const Telemetry& telemetry = config.telemetry;
   return "control socket: " + config.control.socket + "\n" + "flight recorder: " +
@@ -125,11 +117,7 @@ std::string describe_plan(const Compiled& compiled) {
       "config " + compiled.document.path + ", digest " + compiled.document.digest + "\n";
   text += loop_text(config);
   for (std::size_t i = 0; i < config.devices.size(); ++i) text += device_text(compiled, i);
-  if (config.scene.empty()) text += "scene: empty\n";
-  for (const SceneObject& object : config.scene) {
-    text += std::visit([&](const auto& shape) { return object_text(config, shape); }, object);
-  }
-  return text + files_text(config);
+  return text + world_text(compiled) + files_text(config);
 }
 
 }  // namespace hapticd::config

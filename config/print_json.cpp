@@ -3,7 +3,9 @@
 
 #include "config/describe.h"
 #include "config/effective_guard.h"
+#include "config/field_traits.h"
 #include "config/print.h"
+#include "config/print_world.h"
 
 namespace hapticd::config {
 namespace {
@@ -58,9 +60,14 @@ Json guard_json(const EffectiveGuard& guard) {
 }
 
 Json assumed_json(const check::DeviceAssumption& assumed, bool rotary) {
+  std::vector<std::string> active;
+  for (const check::ObjectNote& note : assumed.active)
+    active.push_back(note.object + " " + note.reason);
   return {{"latency_s", assumed.latency_s},
           {key(rotary, "min_damping_Ns_m", "min_damping_Nms_rad"), assumed.min_damping},
-          {"obstacles", assumed.obstacles}};
+          {"obstacles", assumed.obstacles},
+          {"active", active},
+          {"nonconvex", assumed.nonconvex}};
 }
 
 Json device_json(const Compiled& compiled, std::size_t index) {
@@ -84,18 +91,52 @@ Json device_json(const Compiled& compiled, std::size_t index) {
           {"assumed", assumed_json(compiled.assumed[index], rotary)}};
 }
 
-Json object_json(const Config& config, const Plane& plane) {
-  Json devices = plane.devices;
-  if (plane.devices.empty()) {
-    for (const Device& device : config.devices) devices.push_back(device.name);
+template <class T>
+Json json_of(const T& value);
+
+/// The visitor of config/describe.h that writes every key of a struct.
+class JsonValues {
+ public:
+  template <class T>
+  void required(const char* name, T& field, const Key&) {
+    values[name] = json_of(field);
   }
-  return {{"kind", kKindOf<Plane>},
-          {"name", plane.name},
-          {"devices", devices},
-          {"normal", plane.normal},
-          {"offset_m", plane.offset_m},
-          {"stiffness_N_m", plane.stiffness_N_m},
-          {"damping_Ns_m", plane.damping_Ns_m}};
+  template <class T>
+  void optional(const char* name, T& field, const Key&) {
+    values[name] = json_of(field);
+  }
+  Json values = Json::object();
+};
+
+template <class T>
+Json json_of(const T& value) {
+  if constexpr (kIsOptional<T>) {
+    return value ? json_of(*value) : Json(nullptr);
+  } else if constexpr (std::is_enum_v<T>) {
+    return word_of(value);
+  } else if constexpr (kIsGains<T>) {
+    return std::visit([](const auto& form) { return Json(form); }, value.value);
+  } else if constexpr (kIsVector<T>) {
+    Json list = Json::array();
+    for (const auto& item : value) list.push_back(json_of(item));
+    return list;
+  } else if constexpr (kIsStruct<T>) {
+    JsonValues writer;
+    T copy = value;
+    describe(writer, copy);
+    return std::move(writer.values);
+  } else {
+    return value;
+  }
+}
+
+/// Its keys as in a config; who feels it is said whether somebody wrote it or not.
+template <class Kind>
+Json object_json(const Config& config, const Kind& object) {
+  Json json = {{"kind", kKindOf<Kind>}};
+  json.update(json_of(object));
+  if constexpr (!std::is_same_v<Kind, Network>) json["devices"] = felt_by(config, object);
+  return json;
 }
 
 Json loop_json(const Config& config) {
@@ -126,6 +167,7 @@ std::string plan_json(const Compiled& compiled) {
                      {"start", word_of(config.start.enable)},
                      {"require", word_of(config.stability.require)},
                      {"devices", devices},
+                     {"coupling", json_of(config.coupling)},
                      {"scene", scene},
                      {"socket", config.control.socket},
                      {"flight_dir", config.telemetry.flight_dir},

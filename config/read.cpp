@@ -1,18 +1,12 @@
 // A file, or a text, to a Document.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
 #include <memory>
-#include <string_view>
 #include <utility>
 
+#include "config/compilation.h"
 #include "config/compile.h"
+#include "config/digest.h"
+#include "config/file_text.h"
 #include "config/places.h"
 #include "config/reader.h"
 #include "config/yaml_tree.h"
@@ -20,98 +14,128 @@
 namespace hapticd::config {
 namespace {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): tells texts apart, and is no protection against forgery.
-std::string digest_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3U;
-  }
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string written(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4U) written[i] = digits[hash & 15U];
-  return written;
-}
-
-tl::unexpected<std::vector<ConfigError>> unreadable(const std::string& path, ExitCode code,
-                                                    std::string message) {
-  return tl::unexpected(
-      std::vector{ConfigError{.file = path, .message = std::move(message), .code = code}});
-}
-
-tl::unexpected<std::vector<ConfigError>> system_error(const std::string& path, int number) {
-  const std::string reason = std::strerror(number);
-  if (number == EACCES || number == EPERM) {
-    return unreadable(path, ExitCode::no_permission,
-                      "cannot read the config: " + reason + "; who may read it, shows ls -l");
-  }
-  return unreadable(path, ExitCode::no_input, "cannot read the config: " + reason);
-}
-
-/// Closes on every way out.
-class OpenFile {
- public:
-  explicit OpenFile(const std::string& path)
-      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-/// The text of a file; of one that is too long, just enough to see that. Pipes are read as well.
-Checked<std::string> text_of(const std::string& path) {
-  const OpenFile file(path);
-  struct stat status {};
-  if (file.descriptor() < 0 || ::fstat(file.descriptor(), &status) != 0)
-    return system_error(path, errno);
-  if (S_ISDIR(status.st_mode)) {
-    return unreadable(path, ExitCode::no_input,
-                      "expected a config file, found a directory; name the file in it");
-  }
-  std::string text;
-  std::array<char, 16384> block{};
-  while (text.size() <= kMaxTextBytes) {
-    const ssize_t count = ::read(file.descriptor(), block.data(), block.size());
-    if (count == 0) break;
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return system_error(path, errno);
-    text.append(block.data(), static_cast<std::size_t>(count));
-  }
-  return text;
-}
-
 void sort_by_place(std::vector<ConfigError>& errors) {
   std::stable_sort(errors.begin(), errors.end(), [](const ConfigError& a, const ConfigError& b) {
     return std::pair(a.line, a.column) < std::pair(b.line, b.column);
   });
 }
 
-}  // namespace
-
-Checked<Document> read_text(std::string text, const std::string& path) {
+/// All of a text as one struct, with the places of its values.
+template <class T>
+Checked<std::shared_ptr<const Places>> read_yaml(const std::string& text, const std::string& path,
+                                                 T& out) {
   YamlText yaml = parse_yaml(text, path);
   if (!yaml.sound) return tl::unexpected(std::move(yaml.errors));
   Reading reading(path);
   reading.errors = std::move(yaml.errors);
-  Document document{.path = path, .text = std::move(text)};
-  read_value(reading, yaml.root, "", Key{}, document.config);
+  read_value(reading, yaml.root, "", Key{}, out);
   if (!reading.errors.empty()) {
     sort_by_place(reading.errors);
     return tl::unexpected(std::move(reading.errors));
   }
+  return std::make_shared<const Places>(std::move(reading.places));
+}
+
+/// In the config, about the file that it names at `path`.
+ConfigError named_file_error(const Document& document, const std::string& path,
+                             std::string message) {
+  const Mark mark = document.places ? document.places->find(path) : Mark{};
+  return {.file = document.path,
+          .line = mark.line,
+          .column = mark.column,
+          .path = path,
+          .message = std::move(message)};
+}
+
+/// A file that the config names at `path`; one that cannot be read is an error there.
+template <class T>
+Checked<std::shared_ptr<const Places>> read_named(const Document& document, const std::string& path,
+                                                  const std::string& file, std::string& text,
+                                                  T& out) {
+  Checked<std::string> found = file_text(file);
+  if (!found) {
+    const ConfigError& error = found.error().front();
+    return tl::unexpected(
+        std::vector{named_file_error(document, path, error.file + ": " + error.message)});
+  }
+  text = std::move(*found);
+  return read_yaml(text, file, out);
+}
+
+/// One axis; its errors go to `errors`.
+void read_model(Document& document, const std::string& path, AxisModel& model,
+                std::vector<ConfigError>& errors) {
+  const std::string file = *model.file;
+  if (model != AxisModel{.file = file}) {
+    errors.push_back(named_file_error(
+        document, path + ".file",
+        "the other keys of a model stand in that file; remove them here, or the file"));
+    return;
+  }
+  std::string text;
+  ModelFile found;
+  auto places = read_named(document, path + ".file", file, text, found);
+  if (!places) {
+    errors.insert(errors.end(), places.error().begin(), places.error().end());
+    return;
+  }
+  model = std::move(found.model);
+  document.models.push_back({.path = path,
+                             .file = file,
+                             .places = std::move(*places),
+                             .measured = std::move(found.measured)});
+}
+
+}  // namespace
+
+Checked<Document> read_text(std::string text, const std::string& path) {
+  Document document{.path = path, .text = std::move(text)};
+  auto places = read_yaml(document.text, path, document.config);
+  if (!places) return tl::unexpected(std::move(places.error()));
   document.digest = digest_of(document.text);
-  document.places = std::make_shared<const Places>(std::move(reading.places));
+  document.places = std::move(*places);
   return document;
 }
 
+std::vector<ConfigError> read_coupling(Document& document) {
+  Coupling& coupling = *document.config.coupling;
+  if (coupling != Coupling{.file = coupling.file}) {
+    return {
+        named_file_error(document, "coupling.file",
+                         "blocks and solver stand in that file; remove them here, or the file")};
+  }
+  std::string text;
+  CouplingFile file;
+  auto places = read_named(document, "coupling.file", *coupling.file, text, file);
+  if (!places) return std::move(places.error());
+  coupling.blocks = std::move(file.blocks);
+  coupling.solver = file.solver;
+  if (file.assumed || file.certificate || file.digest) {
+    document.designed = DesignedCoupling{.assumed = std::move(file.assumed),
+                                         .certificate = std::move(file.certificate),
+                                         .digest = file.digest.value_or(""),
+                                         .actual_digest = digest_of_rest(text)};
+  }
+  document.coupling_places = std::move(*places);
+  return {};
+}
+
+std::vector<ConfigError> read_models(Document& document) {
+  std::vector<ConfigError> errors;
+  for (std::size_t i = 0; i < document.config.devices.size(); ++i) {
+    Device& device = document.config.devices[i];
+    for (std::size_t k = 0; k < device.axes.size(); ++k) {
+      std::optional<AxisModel>& model = device.axes[k].model;
+      const std::string path = indexed("devices", i) + "." + indexed("axes", k) + ".model";
+      if (model && model->file) read_model(document, path, *model, errors);
+    }
+  }
+  return errors;
+}
+
 Checked<Document> read_file(const std::string& path) {
-  return text_of(path).and_then([&](std::string text) { return read_text(std::move(text), path); });
+  return file_text(path).and_then(
+      [&](std::string text) { return read_text(std::move(text), path); });
 }
 
 }  // namespace hapticd::config

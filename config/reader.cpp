@@ -1,6 +1,7 @@
 #include "config/reader.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "config/limits_text.h"
 #include "config/nearest.h"
@@ -37,10 +38,28 @@ bool is_plain(const Node& node) {
   return node.kind == NodeKind::scalar && !node.quoted;
 }
 
-bool is_name(const std::string& text) {
+bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto is_rest = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
   return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), is_rest);
+}
+
+/// left, or left.x
+bool is_coordinate(std::string_view text) {
+  const std::size_t dot = text.find('.');
+  if (dot == std::string_view::npos) return is_name(text);
+  const std::string_view direction = text.substr(dot + 1);
+  return is_name(text.substr(0, dot)) && (direction == "x" || direction == "y" || direction == "z");
+}
+
+bool has_form(std::string_view text, TextForm form) {
+  return form == TextForm::any || (form == TextForm::name ? is_name(text) : is_coordinate(text));
+}
+
+const char* expected_text(TextForm form) {
+  if (form == TextForm::name) return "a name: a to z first, then a to z, 0 to 9 and _";
+  return form == TextForm::coordinate ? "a name, such as left, or one with a direction: left.x"
+                                      : "a text";
 }
 
 /// "a number from 0 to 1 N"
@@ -113,16 +132,13 @@ void read_bool(Reading& reading, const Node& node, const std::string& path, bool
 
 void read_text(Reading& reading, const Node& node, const std::string& path, const Key& key,
                std::string& out) {
-  const bool is_name_key = key.form == TextForm::name;
-  const std::string expected =
-      is_name_key ? "a name: a to z first, then a to z, 0 to 9 and _" : "a text";
   const bool other_type = is_plain(node) && (looks_like_number(node.text) || node.text == "true" ||
                                              node.text == "false");
   if (node.kind != NodeKind::scalar || other_type) {
-    reading.refuse_value(node, path, expected,
-                         other_type && !is_name_key ? "put it in quotes" : "");
-  } else if (is_name_key && !is_name(node.text)) {
-    reading.refuse_value(node, path, expected);
+    reading.refuse_value(node, path, expected_text(key.form),
+                         other_type && key.form == TextForm::any ? "put it in quotes" : "");
+  } else if (!has_form(node.text, key.form)) {
+    reading.refuse_value(node, path, expected_text(key.form));
   } else {
     out = node.text;
   }
@@ -148,6 +164,21 @@ bool check_list(Reading& reading, const Node& node, const std::string& path, con
   if (key.min_items == key.max_items) entries = std::to_string(key.min_items) + " entries";
   reading.refuse_value(node, path, entries.empty() ? "a list" : "a list of " + entries);
   return false;
+}
+
+void read_gains(Reading& reading, const Node& node, const std::string& path, const Key& key,
+                Gains& out) {
+  if (node.kind == NodeKind::sequence) {
+    const bool by_rows = !node.items.empty() && node.items[0].kind == NodeKind::sequence;
+    by_rows ? read_value(reading, node, path, key, out.value.emplace<Rows>())
+            : read_value(reading, node, path, key, out.value.emplace<std::vector<double>>());
+  } else if (is_plain(node)) {
+    read_real(reading, node, path, key, out.value.emplace<double>());
+  } else {
+    reading.refuse_value(node, path,
+                         expected_number("a number", key) + ", a list of them, or a matrix",
+                         quoted_number_hint(node));
+  }
 }
 
 void StructReader::report_missing(const char* name, const Key& key) {

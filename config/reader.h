@@ -95,6 +95,10 @@ void read_struct(Reading& reading, const Node& node, const std::string& path, T&
   reader.report_unknown();
 }
 
+/// A number, a list of numbers, or a list of such lists.
+void read_gains(Reading& reading, const Node& node, const std::string& path, const Key& key,
+                Gains& out);
+
 template <class E>
 void read_enum(Reading& reading, const Node& node, const std::string& path, E& out) {
   auto index = static_cast<std::size_t>(out);
@@ -158,6 +162,8 @@ void read_value(Reading& reading, const Node& node, const std::string& path, con
     Key fixed = key;
     fixed.min_items = fixed.max_items = out.size();
     if (check_list(reading, node, path, fixed)) read_items(reading, node, path, key, out);
+  } else if constexpr (kIsGains<T>) {
+    read_gains(reading, node, path, key, out);
   } else if constexpr (kIsVariant<T>) {
     read_variant(reading, node, path, out);
   } else {

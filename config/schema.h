@@ -1,14 +1,14 @@
 // A config as plain structs, as written in the file: units of the file, defaults beside each field.
 // `describe` in config/describe.h names each key, its range and what it is for; the reader, the
-// JSON schema and the man page follow it. Devices and axes have files of their own.
+// JSON schema and the man page follow it. Devices, axes, couplings, scenes have files of their own.
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "config/schema_coupling.h"
 #include "config/schema_device.h"
+#include "config/schema_scene.h"
 
 namespace hapticd::config {
 
@@ -26,18 +26,6 @@ struct Start {
   EnableWhen enable = EnableWhen::on_command;
   bool operator==(const Start&) const = default;
 };
-
-struct Plane {
-  std::string name;
-  std::vector<std::string> devices;  ///< empty: all
-  std::array<double, 3> normal{};    ///< towards the free side; any length but 0
-  double offset_m = 0;  ///< distance of the surface from the origin along the unit normal
-  double stiffness_N_m = 0;
-  double damping_Ns_m = 0;
-  bool operator==(const Plane&) const = default;
-};
-/// A scene entry is a map with one key, the kind.
-using SceneObject = std::variant<Plane>;
 
 enum class Require { passive, none };
 struct Stability {
@@ -62,7 +50,9 @@ struct Config {
   Loop loop;
   Start start;
   std::vector<Device> devices;
+  std::optional<Coupling> coupling;
   std::vector<SceneObject> scene;
+  Simulation sim;
   Stability stability;
   Guard guard;
   Control control;

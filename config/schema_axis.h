@@ -29,6 +29,7 @@ struct Actuator {
 };
 
 struct AxisModel {
+  std::optional<std::string> file{};  ///< a model file with what follows; gone once it is read
   std::optional<double> mass_kg{};
   std::optional<double> inertia_kgm2{};
   std::optional<double> damping_Ns_m{};
@@ -38,6 +39,32 @@ struct AxisModel {
   double mass_uncertainty = 0;  ///< share: true mass or inertia within (1 +- this)
   double damping_uncertainty = 0;
   bool operator==(const AxisModel&) const = default;
+};
+
+enum class Excited { stepped, chirp };
+/// Where the figures of a model file come from.
+struct Measurement {
+  std::string device, axis;
+  std::string at;  ///< UTC, "2026-01-02T03:04:05Z"
+  Excited method = Excited::stepped;
+  double rate_Hz = 0;
+  double duration_s = 0;
+  double from_Hz = 0, to_Hz = 0;
+  double least_coherence = 0;           ///< over these frequencies
+  std::optional<double> max_force_N{};  ///< bound of the excitation
+  std::optional<double> max_torque_Nm{};
+  double confidence = 0.99;  ///< of every interval
+  double delay_s = 0;        ///< from sample to force
+  double delay_uncertainty_s = 0;
+  std::optional<double> coulomb_uncertainty{};  ///< share; none: no dry friction was found
+  double residual_counts = 0;  ///< what the model does not explain, root mean square
+  bool operator==(const Measurement&) const = default;
+};
+/// What `hapticctl identify` writes.
+struct ModelFile {
+  AxisModel model;  ///< without `file`
+  std::optional<Measurement> measured{};
+  bool operator==(const ModelFile&) const = default;
 };
 
 enum class Estimator { backward_difference, low_pass, least_squares, foaw, alpha_beta_gamma };

@@ -120,6 +120,7 @@ struct Device {
   Kinematics kinematics;
   Pose pose;
   double workspace_scale = 1;
+  double tool_radius_m = 0;
   double latency_s = 0;
   std::vector<Axis> axes;
   Contact contact;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "config/schema_coupling.h"
+
 namespace hapticd::config {
 
 struct SimAxis {
@@ -86,6 +88,20 @@ struct Sim {
   std::vector<SimDigitalStep> digital;
   std::vector<SimFailure> failures;
   bool operator==(const Sim&) const = default;
+};
+
+/// One hand, or several that know of each other, at contacts of several devices: from their
+/// velocities to the forces against them.
+struct SharedHand {
+  std::vector<std::string> contacts;  ///< "left" or "left.x"
+  StateSpace state_space;
+  std::vector<double> velocity_m_s;  ///< empty: at rest
+  bool operator==(const SharedHand&) const = default;
+};
+/// What simulated devices share.
+struct Simulation {
+  std::optional<SharedHand> hand;
+  bool operator==(const Simulation&) const = default;
 };
 
 }  // namespace hapticd::config

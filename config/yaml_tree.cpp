@@ -205,7 +205,9 @@ YamlText parse_yaml(const std::string& text, const std::string& file) {
   TreeBuilder builder(text, file);
   result.sound = run_parser(text, builder);
   if (builder.errors.empty() && !builder.any_document()) {
-    builder.refuse({1, 1}, "the file is empty; expected a config, which starts with 'version: 1'");
+    builder.refuse({1, 1},
+                   "the file is empty; expected keys with values, as a config has, which starts "
+                   "with 'version: 1', or a coupling file with its 'blocks'");
     result.sound = false;
   }
   result.root = std::move(builder.root);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "control/core/capacity.h"
+#include "control/coupling/group.h"
 #include "control/guard/bound.h"
 #include "control/guard/limits.h"
 #include "control/guard/passivity_controller.h"
@@ -18,7 +19,12 @@
 #include "control/observer/compensation.h"
 #include "control/observer/observer.h"
 #include "control/record_layout.h"
+#include "control/scene/encounter.h"
+#include "control/scene/fields.h"
+#include "control/scene/mesh.h"
+#include "control/scene/path.h"
 #include "control/scene/plane.h"
+#include "control/scene/shapes.h"
 
 namespace hapticd::control {
 
@@ -82,7 +88,31 @@ struct Plan {
   std::span<const ObserverPlan> axis_observers;
   std::span<const ObserverPlan> contact_observers;
 
-  std::span<const PlaneContact> planes;
+  std::span<const PlaneContact> planes;   ///< those that need nothing of what follows
+  std::span<const ContactPlan> contacts;  ///< one per device; empty: a scene of planes at most
+  std::span<const Encounter> encounters;  ///< by contact, those without bounds last
+  std::span<const Plane> free_planes;
+  std::span<const Relief> reliefs;
+  std::span<const Box> boxes;
+  std::span<const Sphere> spheres;
+  std::span<const Cylinder> cylinders;
+  std::span<const Capsule> capsules;
+  std::span<const Mesh> meshes;
+  std::span<const PointGuide> point_guides;
+  std::span<const LineGuide> line_guides;
+  std::span<const CurveGuide> curve_guides;
+  std::span<const Vec3> curve_points;
+  std::span<const ViscousField> viscous_fields;
+  std::span<const ConstantField> constant_fields;
+  std::span<const Detents> detents;
+  std::span<const Magnet> magnets;
+  std::span<const Vibration> vibrations;
+  std::span<const Path> paths;
+  std::span<const Waypoint> waypoints;
+
+  std::span<const GroupPlan> groups;
+  std::span<const std::uint16_t> group_contacts;
+  std::span<const double> gains;
 
   std::span<const TravelPlan> travels;
   std::span<const PowerLimit> power_limits;

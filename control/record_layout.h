@@ -15,12 +15,12 @@ struct RecordLayout {
   RecordArray raw, age_ns, delivered;  ///< per axis, from the input
   // From here to `fade` one block, as in State::recorded; control/recorded.h says what each is.
   RecordArray q, qd, gravity, friction, observer, residual, travel, effort;  ///< per axis
-  RecordArray x, hand_force, scene_force, observer_force, contact_residual, limited,
-      force;                              ///< per coordinate
-  RecordArray work, reserve, gain, fade;  ///< per device
-  RecordArray aux;                        ///< per device
-  RecordArray freshness, homed;           ///< per axis, one byte each
-  std::uint32_t bytes = 0;                ///< of a whole record, a multiple of 8
+  RecordArray x, hand_force, proxy, scene_force, observer_force, contact_residual, limited,
+      force;                                                     ///< per coordinate
+  RecordArray solve_error, injected, work, reserve, gain, fade;  ///< per device
+  RecordArray aux;                                               ///< per device
+  RecordArray freshness, homed;                                  ///< per axis, one byte each
+  std::uint32_t bytes = 0;  ///< of a whole record, a multiple of 8
   bool operator==(const RecordLayout&) const = default;
 };
 

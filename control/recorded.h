@@ -51,6 +51,12 @@ constexpr bool travel(const Plan& p) {
 constexpr bool sensor(const Plan& p) {
   return !p.force_sensors.empty();
 }
+constexpr bool coupling(const Plan& p) {
+  return !p.groups.empty();
+}
+constexpr bool encounters(const Plan& p) {
+  return !p.encounters.empty() || !p.groups.empty();
+}
 constexpr bool controller(const Plan& p) {
   return !p.passivity_controllers.empty();
 }
@@ -77,6 +83,8 @@ inline constexpr std::array kRecorded = {
                   recorded_detail::always},
     RecordedField{&State::hand_force, &RecordLayout::hand_force, ".hand_force", Per::coordinate,
                   Quantity::newton, recorded_detail::sensor},
+    RecordedField{&State::proxy, &RecordLayout::proxy, ".proxy", Per::coordinate, Quantity::metre,
+                  recorded_detail::coupling},
     RecordedField{&State::scene_force, &RecordLayout::scene_force, ".scene_force", Per::coordinate,
                   Quantity::newton, recorded_detail::always},
     RecordedField{&State::observer_force, &RecordLayout::observer_force, ".observer_force",
@@ -87,6 +95,10 @@ inline constexpr std::array kRecorded = {
                   Quantity::newton, recorded_detail::always},
     RecordedField{&State::force, &RecordLayout::force, ".force", Per::coordinate, Quantity::newton,
                   recorded_detail::always},
+    RecordedField{&State::solve_error, &RecordLayout::solve_error, ".solve_error", Per::device,
+                  Quantity::newton, recorded_detail::encounters},
+    RecordedField{&State::injected, &RecordLayout::injected, ".injected", Per::device,
+                  Quantity::joule, recorded_detail::encounters},
     RecordedField{&State::work, &RecordLayout::work, ".work", Per::device, Quantity::joule,
                   recorded_detail::always},
     RecordedField{&State::reserve, &RecordLayout::reserve, ".reserve", Per::device, Quantity::joule,

@@ -11,6 +11,7 @@
 #include "control/motion/estimators.h"
 #include "control/motion/homing.h"
 #include "control/observer/observer.h"
+#include "control/scene/encounter.h"
 
 namespace hapticd::control {
 
@@ -45,6 +46,17 @@ struct State {
   std::span<double> heat;      ///< 0 to 1, beside plan.thermals
   std::span<double> jacobian;  ///< m or m/rad; Linkage::jacobian says where each begins
 
+  std::span<EncounterState> encounters;  ///< beside plan.encounters
+  std::span<MeshWalk> walks;             ///< of meshes; Encounter::walk
+  std::span<std::uint32_t> segments;     ///< of curves; Encounter::walk
+  std::span<ContactState> contacts;      ///< beside plan.contacts
+  std::span<Member> members;             ///< beside plan.group_contacts; of this tick only
+  std::span<std::uint32_t> near;         ///< encounters, from ContactPlan::first_encounter on
+  std::span<double> coupling_memory;     ///< GroupPlan::first_memory
+  std::span<double> network;             ///< GroupPlan::first_state
+  double scene_time_s = 0;  ///< of this tick, since the loop started: where moving objects are
+  double scene_last_s = 0;  ///< of the last tick
+
   // Everything recorded is one block, in the order of control/recorded.h: a record copies it whole.
   // A span whose work the plan does not name is empty.
   std::span<double> q;            ///< m or rad, per axis
@@ -57,11 +69,14 @@ struct State {
   std::span<double> effort;       ///< N or N m, per axis: what is asked of the device
   std::span<double> x;            ///< m, contact coordinates
   std::span<double> hand_force;   ///< N, contact coordinates: of the hand, measured
+  std::span<double> proxy;        ///< m, contact coordinates: y of the coupling, else x
   std::span<double> scene_force;  ///< N on the contacts, before any guard
   std::span<double> observer_force;    ///< N, of contact observers, before ramp and fade
   std::span<double> contact_residual;  ///< N, of contact observers, before Q
   std::span<double> limited;           ///< N: scene_force less what the guard let through
   std::span<double> force;             ///< N on the contacts, after the guard
+  std::span<double> solve_error;       ///< N, per device: force that the last sweep still moved
+  std::span<double> injected;          ///< J, per device: what moving and swinging objects gave
   std::span<double> work;              ///< J, per device: done by its motors since the start
   std::span<double> reserve;           ///< J, per device: of its passivity controller
   std::span<double> gain;              ///< 0 to 1, per device: of its passivity controller

@@ -10,6 +10,7 @@
 #include "control/kinematics/kinematics.h"
 #include "control/motion/sense.h"
 #include "control/observer/compensation.h"
+#include "control/scene/carry.h"
 #include "control/scene/render.h"
 
 namespace hapticd::control {
@@ -22,7 +23,7 @@ TickOutput step(const Plan& plan, State& state,
   forward(plan, state, findings);
   bound(plan, state, findings);
   compensate(plan, state, input, findings);
-  render(plan, state);
+  render(plan, state, input, findings);
   decide_mode(plan, state, input, findings);
   guard(plan, state, findings);
   actuate(plan, state, findings);
@@ -73,6 +74,7 @@ void carry_over(const Plan& from_plan, const State& from, const Plan& to_plan,
   carry(from_plan.passivity_controllers, from.passivity_controllers, to_plan.passivity_controllers,
         to.passivity_controllers, &PassivityPlan::device);
   carry(from_plan.thermals, from.heat, to_plan.thermals, to.heat, &ThermalPlan::axis);
+  carry_scene(from_plan, from, to_plan, to);
   to.mode = from.mode;
   to.fault = from.fault;
   to.adopted = true;

@@ -1,40 +1,14 @@
 #include "daemon/ctl_check.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "config/compile.h"
 #include "config/print.h"
 #include "daemon/protocol.h"
 #include "daemon/stability_gate.h"
+#include "daemon/stability_json.h"
 
 namespace hapticd::daemon {
-namespace {
-
-/// JSON knows no infinity: null where there is no bound.
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json stability_json(const Gate& gate) {
-  Json devices = Json::array();
-  for (std::size_t i = 0; i < gate.devices.size(); ++i) {
-    const check::PassiveAnswer& answer = gate.devices[i];
-    devices.push_back({{"device", gate.names[i]},
-                       {"proved", answer.proved},
-                       {"why", answer.why},
-                       {"damping_used", finite(answer.damping_used)},
-                       {"stiffness_factor", finite(answer.stiffness_factor)},
-                       {"longest_hold_s", finite(answer.longest_hold_s)}});
-  }
-  return {{"proved", gate.proved()},
-          {"forces_may_be_enabled", gate.permits(false)},
-          {"verdict", gate.verdict},
-          {"devices", std::move(devices)}};
-}
-
-}  // namespace
-
 ExitCode print_config_errors(const std::vector<config::ConfigError>& errors, bool json) {
   const ExitCode code = errors.empty() ? ExitCode::bad_data : errors.front().code;
   if (!json) {

@@ -1,32 +1,18 @@
 #include "daemon/ctl_simulate.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 
-#include <atomic>
 #include <cstdio>
 
 #include "daemon/ctl_check.h"
 #include "daemon/ctl_verbs.h"
+#include "daemon/interrupts.h"
 #include "daemon/lifecycle.h"
 #include "daemon/recording.h"
 #include "daemon/stability_gate.h"
 
 namespace hapticd::daemon {
 namespace {
-
-std::atomic<bool> interrupted{false};
-extern "C" void on_interrupt(int) {
-  interrupted.store(true);
-}
-
-void catch_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one ends it there and then
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-}
 
 Json result_json(const SimulateResult& r, const std::string& fault, const std::string& verdict,
                  const std::string& output) {
@@ -60,8 +46,7 @@ ExitCode run_simulate(const std::string& config_path, const SimulateOptions& opt
   auto compiled = config::load(config_path);
   if (!compiled) return print_config_errors(compiled.error(), json);
   const Gate gate = stability_gate(*compiled);
-  catch_interrupts();
-  auto result = simulate(*compiled, options, interrupted);
+  auto result = simulate(*compiled, options, interrupts());
   if (!result) return print_error(result.error(), json);
   const std::string fault = result->fault.code == Fault::none
                                 ? ""

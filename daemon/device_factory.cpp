@@ -1,5 +1,6 @@
 #include "daemon/device_factory.h"
 
+#include "sim/shared_hand.h"
 #include "sim/sim_device.h"
 
 namespace hapticd::daemon {
@@ -7,10 +8,15 @@ namespace hapticd::daemon {
 std::vector<std::unique_ptr<drivers::Device>> make_devices(const config::Compiled& compiled) {
   std::vector<std::unique_ptr<drivers::Device>> devices;
   const auto& described = compiled.document.config.devices;
+  std::shared_ptr<sim::SharedHand> hand;
+  if (compiled.shared_hand)
+    hand = std::make_shared<sim::SharedHand>(*compiled.shared_hand, compiled.simulated);
   for (std::size_t i = 0; i < described.size(); ++i) {
     switch (described[i].driver) {
       case config::Driver::sim:
-        devices.push_back(std::make_unique<sim::SimDevice>(compiled.simulated[i]));
+        devices.push_back(hand && hand->holds(i)
+                              ? std::make_unique<sim::SimDevice>(hand, i)
+                              : std::make_unique<sim::SimDevice>(compiled.simulated[i]));
         break;
     }
   }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
@@ -96,6 +97,19 @@ Result<void> OutputFile::give_up(int reason) {
   failed_ = reason;
   buffer_.clear();
   return fail(ExitCode::cannot_create, path_ + ": cannot be written: " + errno_text(reason));
+}
+
+Result<void> replace_file(const std::string& path, std::string_view text) {
+  const std::string draft = path + ".new";
+  auto written =
+      OutputFile::create(draft, IfExists::replace).and_then([&](OutputFile file) -> Result<void> {
+        if (auto done = file.write(text); !done) return done;
+        return file.close();
+      });
+  if (written && std::rename(draft.c_str(), path.c_str()) != 0)
+    written = fail(ExitCode::cannot_create, path + ": cannot be written: " + errno_text(errno));
+  if (!written) ::unlink(draft.c_str());
+  return written;
 }
 
 }  // namespace hapticd::daemon

@@ -44,6 +44,10 @@ class OutputFile {
   std::vector<std::byte> buffer_;
 };
 
+/// Writes beside `path` and renames: whoever looks finds the old file or the new one, never half of
+/// it. Errors as of OutputFile; nothing is left behind.
+Result<void> replace_file(const std::string& path, std::string_view text);
+
 /// "No space left on device" and the like.
 std::string errno_text(int reason);
 

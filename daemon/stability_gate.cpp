@@ -14,10 +14,17 @@ bool Gate::proved() const noexcept {
 
 std::string Gate::explanation() const {
   std::string text = verdict;
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    text += fmt::format("\n  {}: {}: {}", names[i],
-                        devices[i].proved ? "passive, proved" : "not proved", devices[i].why);
+  for (std::size_t i = 0; i < devices.size();) {
+    // Devices that are tied share one answer.
+    std::string who = names[i];
+    std::size_t next = i + 1;
+    for (; next < devices.size() && devices[next].why == devices[i].why; ++next)
+      who += ", " + names[next];
+    text += fmt::format("\n  {}: {}: {}", who, devices[i].proved ? "passive, proved" : "not proved",
+                        devices[i].why);
+    i = next;
   }
+  if (!certificate_problem.empty()) text += "\n  " + certificate_problem;
   return text;
 }
 
@@ -56,9 +63,12 @@ Gate stability_gate(const config::Compiled& compiled) {
   const bool only_simulated = std::all_of(
       devices.begin(), devices.end(),
       [](const config::Device& device) { return device.driver == config::Driver::sim; });
-  return decide(compiled.document.config.stability.require, only_simulated,
-                check::passive(compiled.program->plan(), compiled.assumed),
-                compiled.program->spec().device_names);
+  Gate gate =
+      decide(compiled.document.config.stability.require, only_simulated,
+             check::passive(compiled.program->plan(), compiled.assumed, compiled.certificate.get()),
+             compiled.program->spec().device_names);
+  gate.certificate_problem = compiled.certificate_problem;
+  return gate;
 }
 
 }  // namespace hapticd::daemon

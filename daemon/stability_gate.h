@@ -18,6 +18,7 @@ struct Gate {
   std::string verdict;  ///< one sentence, with what to do where the gate is not open
   std::vector<check::PassiveAnswer> devices;  ///< in plan order
   std::vector<std::string> names;
+  std::string certificate_problem{};  ///< why the coupling file's certificate does not count
 
   bool permits(bool unproven) const noexcept {
     return answer == Answer::open || (answer == Answer::needs_unproven && unproven);

@@ -1,6 +1,5 @@
 #include "sim/axis.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace hapticd::sim {
@@ -56,10 +55,7 @@ void Axis::run_piece(const Piece& piece, const ScriptValue& hand, Wires& wires) 
 }
 
 void Axis::observe_substep(std::size_t substep) noexcept {
-  truth_.position_m = plant_.position_m();
-  truth_.velocity_m_s = plant_.velocity_m_s();
-  truth_.min_position_m = std::min(truth_.min_position_m, truth_.position_m);
-  truth_.max_position_m = std::max(truth_.max_position_m, truth_.position_m);
+  truth_.observe(plant_.position_m(), plant_.velocity_m_s());
   trace_[substep] = truth_.position_m;
 }
 

@@ -1,7 +1,5 @@
 #include "sim/linkage.h"
 
-#include <algorithm>
-
 namespace hapticd::sim {
 namespace {
 
@@ -62,10 +60,8 @@ void Linkage::observe_substep(std::size_t substep) noexcept {
   for (std::size_t i = 0; i < truth_.size(); ++i) {
     const auto joint = static_cast<int>(i);
     Truth& truth = truth_[i];
-    truth.position_m = trace_[i][substep] = plant_.q()[joint];
-    truth.velocity_m_s = plant_.qd()[joint];
-    truth.min_position_m = std::min(truth.min_position_m, truth.position_m);
-    truth.max_position_m = std::max(truth.max_position_m, truth.position_m);
+    truth.observe(plant_.q()[joint], plant_.qd()[joint]);
+    trace_[i][substep] = truth.position_m;
     truth.effort_N = input_.effort[joint];
     truth.script_force_N = input_.force_N;
     truth.rest_m = input_.rest_m;

@@ -2,6 +2,7 @@
 // read by nobody else: no analysis and no compile of a plan may look at it.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -118,6 +119,30 @@ struct DeviceOptions {
   std::optional<LinkageOptions> linkage{};  ///< none: axes are independent of each other
   std::optional<ForceSensorOptions> force_sensor{};
   std::vector<DigitalStep> digital{};  ///< in the order of their times
+};
+
+/// An axis that a shared hand holds.
+struct HeldAxis {
+  std::size_t device = 0;   ///< index among all devices
+  std::size_t axis = 0;     ///< of that device
+  double velocity_m_s = 0;  ///< at start
+};
+
+/// A linear hand that holds axes of several devices at once: two hands of one person, fingers of
+/// one hand. With v the velocities of `axes` [m/s], in their order, -F acts on them [N]:
+///
+///   xi' = A xi + B v,   F = C xi + D v,   xi = 0 at start
+///
+/// It need not be passive. Matrices by rows, n = states, m = axes.size(). The devices that it
+/// touches have axes without linkage, Coulomb friction and stops and no hand of their own; axes of
+/// theirs that it does not name move beside it. Its devices share period_s and substeps.
+struct SharedHandOptions {
+  std::vector<HeldAxis> axes;
+  std::size_t states = 0;  ///< up to 64
+  std::vector<double> A;   ///< n x n
+  std::vector<double> B;   ///< n x m
+  std::vector<double> C;   ///< m x n
+  std::vector<double> D;   ///< m x m
 };
 
 }  // namespace hapticd::sim

@@ -1,30 +1,11 @@
 #include "sim/plant.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "sim/matrix_exponential.h"
+
 namespace hapticd::sim {
-namespace {
-
-// e^A - I, by Taylor series on A/2^s and s squarings. Working on the difference to I keeps the
-// relative accuracy of coefficients that are small because the interval is short: (I + D)^2 - I = 2
-// D + D^2. |A/2^s| <= 1/4 in the maximum row sum, so 14 terms leave out less than 1e-21.
-Eigen::Matrix4d exp_minus_identity(const Eigen::Matrix4d& a) {
-  constexpr int kTerms = 14;
-  int exponent = 0;
-  std::frexp(4 * a.cwiseAbs().rowwise().sum().maxCoeff(), &exponent);
-  const int squarings = std::max(0, exponent);
-  const Eigen::Matrix4d scaled = a * std::ldexp(1.0, -squarings);
-  Eigen::Matrix4d d = Eigen::Matrix4d::Zero();
-  for (int n = kTerms; n >= 1; --n) {
-    d = (scaled / n * (Eigen::Matrix4d::Identity() + d)).eval();
-  }
-  for (int i = 0; i < squarings; ++i) d = (2 * d + d * d).eval();
-  return d;
-}
-
-}  // namespace
 
 // State (y, v, f, s) with y = x - r at the start, f the held force, s its slope (k r'). In units of
 // the interval's own length h and of M, (y, v h, f h^2/M, s h^3/M), all entries are of order one

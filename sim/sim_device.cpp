@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "sim/check_options.h"
@@ -11,9 +12,6 @@
 namespace hapticd::sim {
 namespace {
 
-// A longer gap is not made up for: after a suspended night the servo thread would simulate all of
-// it in one tick.
-constexpr std::int64_t kMaxCatchUpTicks = 1000;
 constexpr std::int64_t kBeforeScript = std::numeric_limits<std::int64_t>::min() / 2;
 
 std::int64_t processor_time_ns() noexcept {
@@ -34,10 +32,15 @@ void burn(std::int64_t duration_ns) noexcept {
 SimDevice::SimDevice(DeviceOptions options)
     : options_(std::move(options)), failures_({}, options_.period_s) {}
 
+SimDevice::SimDevice(std::shared_ptr<SharedHand> hand, std::size_t device)
+    : SimDevice(hand->device(device)) {
+  hand_ = std::move(hand);
+  number_ = device;
+}
+
 Result<drivers::DeviceInfo> SimDevice::connect() {
-  const std::string problem = first_problem(options_);
-  if (!problem.empty()) {
-    return fail(ExitCode::bad_data, "simulated device " + options_.name + ": " + problem);
+  if (const std::string wrong = problem(); !wrong.empty()) {
+    return fail(ExitCode::bad_data, "simulated device " + options_.name + ": " + wrong);
   }
   make_plants();
   make_inputs();
@@ -52,11 +55,19 @@ Result<drivers::DeviceInfo> SimDevice::connect() {
                              .worst_sample_age_s = 0};
 }
 
+std::string SimDevice::problem() const {
+  const std::string own = first_problem(options_);
+  if (!own.empty() || !hand_) return own;
+  const std::string shared = hand_->problem();
+  return shared.empty() ? shared : "shared hand: " + shared;
+}
+
 void SimDevice::make_plants() {
   const TimeGrid grid{options_.period_s, options_.substeps};
   wires_.clear();
   axes_.clear();
   linkage_.reset();
+  if (hand_) return hand_->restart();
   for (std::size_t i = 0; i < options_.axes.size(); ++i) {
     wires_.emplace_back(options_.axes[i], options_.period_s, options_.seed, i);
     if (!options_.linkage) axes_.emplace_back(options_.axes[i], options_.hand, grid);
@@ -82,7 +93,7 @@ void SimDevice::make_inputs() {
 
 void SimDevice::disconnect() noexcept {
   arm_wanted_ = armed_ = false;
-  for (Wires& axis : wires_) axis.cut();
+  for (Wires& axis : wires()) axis.cut();
 }
 
 void SimDevice::request(const drivers::TickTime& time) noexcept {
@@ -97,8 +108,8 @@ void SimDevice::request(const drivers::TickTime& time) noexcept {
 }
 
 void SimDevice::run_until(std::int64_t tick) noexcept {
-  std::int64_t left = std::min(tick - tick_, kMaxCatchUpTicks);
-  for (; left > 0; --left) run_tick();
+  if (hand_) hand_->run_until(tick);
+  for (std::int64_t left = owed_ticks(tick_, tick); left > 0; --left) run_tick();
   tick_ = std::max(tick, tick_);
 }
 
@@ -115,16 +126,17 @@ void SimDevice::run_tick() noexcept {
 
 void SimDevice::measure(std::int64_t stamp_ns) noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < wires_.size(); ++i) {
-    const double counts = wires_[i].read_encoder(truth(i).position_m, failures_.jump_m(i));
+  const std::span<Wires> wires = this->wires();
+  for (std::size_t i = 0; i < wires.size(); ++i) {
+    const double counts = wires[i].read_encoder(truth(i).position_m, failures_.jump_m(i));
     AxisSample& sample = samples_[i];
     const bool missing = failures_.on(FailureKind::missing, i);
     if (!missing && !failures_.on(FailureKind::stuck, i)) sample.raw = counts;
     if (failures_.on(FailureKind::nan, i)) sample.raw = kNaN;
     sample.freshness = missing ? Freshness::missing : Freshness::fresh;
     sample.homed = tick_ - first_tick_ >= homed_tick_[i];
-    sample.index = wires_[i].index().seen;
-    sample.index_raw = wires_[i].index().counts;
+    sample.index = wires[i].index().seen;
+    sample.index_raw = wires[i].index().counts;
     sample.stamp_ns = stamp_ns;
   }
 }
@@ -133,7 +145,8 @@ void SimDevice::measure_force() noexcept {
   if (force_noise_.empty()) return;
   if (linkage_) std::copy_n(linkage_->hand_force_N(script_substep()).begin(), 3, analogue_.begin());
   for (std::size_t i = 0; i < force_noise_.size(); ++i) {
-    if (!linkage_) analogue_[i] = axes_[i].hand_force_N(script_substep());
+    if (hand_) analogue_[i] = hand_->force_N(number_, i);
+    if (!axes_.empty()) analogue_[i] = axes_[i].hand_force_N(script_substep());
     const double noise_N = options_.force_sensor->noise_N;
     if (noise_N > 0) analogue_[i] += noise_N * force_noise_[i].normal();
   }
@@ -167,20 +180,21 @@ void SimDevice::switch_power() noexcept {
   if (armed == armed_) return;
   armed_ = armed;
   armed_tick_ = tick_;
-  for (Wires& axis : wires_) axis.cut();
+  for (Wires& axis : wires()) axis.cut();
   for (Axis& axis : axes_) axis.restart_script();
   if (linkage_) linkage_->restart_script();
 }
 
 void SimDevice::command(std::span<const double> effort, std::span<double> delivered) noexcept {
-  const std::size_t count = std::min({wires_.size(), effort.size(), delivered.size()});
+  const std::span<Wires> wires = this->wires();
+  const std::size_t count = std::min({wires.size(), effort.size(), delivered.size()});
   for (std::size_t i = 0; i < count; ++i) {
-    delivered[i] = armed_ ? wires_[i].command(effort[i]) : 0;
+    delivered[i] = armed_ ? wires[i].command(effort[i]) : 0;
   }
 }
 
 void SimDevice::stop() noexcept {
-  for (Wires& axis : wires_) axis.command(0);
+  for (Wires& axis : wires()) axis.command(0);
 }
 
 std::string_view SimDevice::fault_text() const noexcept {

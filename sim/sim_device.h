@@ -7,12 +7,15 @@
 //   collect   hands out the readings; the power stage goes on or off here
 //   command   efforts from now on (after each axis' delay)
 //
+// Devices that share a hand run together, in the request of the first of them (shared_hand.h).
 // Missed ticks are time in which the last effort is held, as on a real device.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +25,7 @@
 #include "sim/linkage.h"
 #include "sim/noise.h"
 #include "sim/options.h"
+#include "sim/shared_hand.h"
 #include "sim/wires.h"
 
 namespace hapticd::sim {
@@ -29,6 +33,8 @@ namespace hapticd::sim {
 class SimDevice final : public drivers::Device {
  public:
   explicit SimDevice(DeviceOptions options);
+  /// Number `device` of those that share the hand.
+  SimDevice(std::shared_ptr<SharedHand> hand, std::size_t device);
 
   /// Starts the truth anew: two runs after two connects are the same. Errors: options out of range.
   Result<drivers::DeviceInfo> connect() override;
@@ -44,12 +50,14 @@ class SimDevice final : public drivers::Device {
   const DeviceOptions& options() const noexcept { return options_; }
   /// As of the last request(); axis < options().axes.size(), after connect().
   const Truth& truth(std::size_t axis) const noexcept {
+    if (hand_) return hand_->truth(number_, axis);
     return linkage_ ? linkage_->truth(axis) : axes_[axis].truth();
   }
   /// As of the last request(); only of a device with options().linkage, after connect().
   const TipTruth& tip() const noexcept { return linkage_->tip(); }
   /// Positions [m] of an axis at the ends of the sub-steps of the last period that was simulated.
   std::span<const double> trace(std::size_t axis) const noexcept {
+    if (hand_) return hand_->trace(number_, axis);
     return linkage_ ? linkage_->trace(axis) : axes_[axis].trace();
   }
 
@@ -58,6 +66,10 @@ class SimDevice final : public drivers::Device {
     std::int64_t tick = 0;  ///< of device time, from which on
     std::uint32_t bits = 0;
   };
+  std::span<Wires> wires() noexcept {
+    return hand_ ? hand_->wires(number_) : std::span<Wires>(wires_);
+  }
+  std::string problem() const;
   void make_plants();
   void make_inputs();
   std::int64_t script_substep() const noexcept;
@@ -69,8 +81,10 @@ class SimDevice final : public drivers::Device {
   void switch_power() noexcept;
 
   DeviceOptions options_;
-  std::vector<Wires> wires_;  ///< of every axis
-  // One of the two moves.
+  std::size_t number_ = 0;    ///< of this device, to the hand
+  std::vector<Wires> wires_;  ///< of every axis; a shared hand has its own
+  // One of the three moves.
+  std::shared_ptr<SharedHand> hand_;
   std::vector<Axis> axes_;
   std::optional<Linkage> linkage_;
   std::vector<AxisSample> samples_;

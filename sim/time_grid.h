@@ -1,5 +1,6 @@
 // How device time is cut: ticks into sub-steps, sub-steps where a delayed effort changes.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,13 @@ struct TimeGrid {
 /// The first tick at or after `at_s`; 0.3 s at 1 kHz is tick 300, although 0.3 / 0.001 is more.
 std::int64_t tick_at(double at_s, double period_s) noexcept;
 
+/// Ticks to run from one tick to another. A longer gap is not made up for: after a suspended night
+/// the servo thread would simulate all of it in one tick.
+inline constexpr std::int64_t kMaxCatchUpTicks = 1000;
+inline std::int64_t owed_ticks(std::int64_t from, std::int64_t to) noexcept {
+  return std::min(to - from, kMaxCatchUpTicks);
+}
+
 /// Whole periods in a delay.
 std::size_t whole_periods(double delay_s, double period_s) noexcept;
 
@@ -29,10 +37,10 @@ struct Segment {
   double end_s = 0;
   bool last = true;  ///< of its sub-step
   /// By axis: periods since the command that acts.
-  std::array<std::uint16_t, kMaxAxesPerDevice> effort_age{};
+  std::array<std::uint16_t, kMaxAxes> effort_age{};
 };
 
-/// The segments of one period for axes with these delays; at most kMaxAxesPerDevice. A delay of n
+/// The segments of one period for axes with these delays; at most kMaxAxes. A delay of n
 /// periods and a rest: the command of n+1 periods ago acts until the rest has passed, then that of
 /// n periods ago. Set-up only.
 std::vector<Segment> cut_period(TimeGrid grid, std::span<const double> delays_s);

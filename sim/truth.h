@@ -1,5 +1,6 @@
 // What really happened to a simulated device; no loop gets to see it. Works are since connect().
 #pragma once
+#include <algorithm>
 #include <array>
 
 namespace hapticd::sim {
@@ -15,7 +16,16 @@ struct Truth {
   double rest_m = 0;          ///< of the hand's spring, now
   double effort_work_J = 0;   ///< that the actuator put into the axis
   double script_work_J = 0;   ///< that the hand's scripted force put in; 0 for a joint
-  double energy_J = 0;        ///< kinetic, of the hand's spring and of the stops; 0 for a joint
+  /// Kinetic, of the hand's spring and of the stops; kinetic alone where a hand is shared; 0 for a
+  /// joint.
+  double energy_J = 0;
+
+  void observe(double at_m, double at_m_s) noexcept {
+    position_m = at_m;
+    velocity_m_s = at_m_s;
+    min_position_m = std::min(min_position_m, at_m);
+    max_position_m = std::max(max_position_m, at_m);
+  }
 };
 
 /// Of a linkage as a whole, in the device frame. At every sub-step

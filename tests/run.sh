@@ -9,9 +9,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
   cat << 'END'
-usage: tests/run.sh [--clang] [--asan] [--tsan] [--rtsan] [--long] [--bench] [--vm] [--fuzz]
+usage: tests/run.sh [--clang] [--asan] [--asan-all] [--tsan] [--rtsan] [--long] [--bench] [--vm] [--fuzz]
   --clang   build with clang 14, benchmarks too, warnings are errors; unit tests
-  --asan    clang 14, AddressSanitizer and UndefinedBehaviorSanitizer, all tests but lint and service
+  --asan    clang 14, AddressSanitizer and UndefinedBehaviorSanitizer, all tests but lint, service and those of
+            control/design: numerics that touch memory through Eigen alone
+  --asan-all  with those, which takes half as long again
   --tsan    ThreadSanitizer, the tests of threads and what they share
   --rtsan   RealtimeSanitizer (clang 22), the tests of the loop
   --long    the tests that take long
@@ -24,7 +26,7 @@ END
 suites=(default)
 for option in "$@"; do
   case $option in
-    --clang | --asan | --tsan | --rtsan | --long | --bench | --vm | --fuzz) suites+=("${option#--}") ;;
+    --clang | --asan | --asan-all | --tsan | --rtsan | --long | --bench | --vm | --fuzz) suites+=("${option#--}") ;;
     --help) usage && exit 0 ;;
     *) echo "tests/run.sh: unknown option $option" >&2 && usage >&2 && exit 64 ;;
   esac
@@ -75,17 +77,17 @@ suite_clang() {
 }
 # By clang, with warnings as errors: so it is the second compiler's word too, without a build of its own.
 suite_asan() {
-  install_packages "${packages_clang[@]}" "${packages_bench[@]}"
+  install_packages "${packages_clang[@]}"
   fix_addresses
   build_in build/asan clang++-14 all "${sanitized[@]}" -DHAPTICD_SANITIZE=address,undefined -DHAPTICD_WERROR=ON \
-    -DHAPTICD_BUILD_BENCH=ON
+    -DHAPTICD_TEST_NUMERICS="${1:-OFF}"
   run_ctest --test-dir build/asan -LE 'long|lint|service'
 }
+suite_asan-all() { suite_asan ON; }
 suite_tsan() {
   fix_addresses
-  build_in build/tsan g++ 'test_rt test_daemon test_servo' "${sanitized[@]}" -DHAPTICD_SANITIZE=thread
+  build_in build/tsan g++ 'test_rt test_servo' "${sanitized[@]}" -DHAPTICD_SANITIZE=thread
   run_ctest --test-dir build/tsan -L threads
-  run_ctest --test-dir build/tsan -R '^Telemetry'
 }
 suite_rtsan() {
   if ! command -v clang++-22 > /dev/null; then
@@ -101,8 +103,8 @@ suite_long() {
 }
 suite_bench() {
   install_packages "${packages_bench[@]}"
-  build_in build/bench '' bench_tick -DCMAKE_BUILD_TYPE=Release -DHAPTICD_BUILD_BENCH=ON
-  find build/bench -name bench_tick -type f -exec {} \;
+  build_in build/bench '' 'bench_tick bench_scene bench_mesh' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_BUILD_BENCH=ON
+  find build/bench -name 'bench_*' -type f -perm -u+x -exec {} \;
 }
 suite_vm() { skip "--vm: no VM suite yet: arrives with the CAN drivers"; }
 suite_fuzz() { skip "--fuzz: no fuzz suite yet: arrives with the drivers' codecs"; }

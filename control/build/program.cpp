@@ -1,8 +1,10 @@
 #include "control/build/program.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
+#include "control/build/scene.h"
 #include "control/record.h"
 #include "control/recorded.h"
 
@@ -28,11 +30,15 @@ class Block {
 
 }  // namespace
 
-Program::Program(ProgramSpec spec) : spec_(std::move(spec)) {
+Program::Program(ProgramSpec spec)
+    : spec_(std::move(spec)), scene_(std::make_unique<Scene>(arrange_scene(spec_))) {
   complete_kinematics();
   make_plan();
   make_state();
+  make_scene_state();
 }
+
+Program::~Program() = default;
 
 std::size_t Program::coordinates() const noexcept {
   std::size_t count = 0;
@@ -82,6 +88,29 @@ void Program::make_plan() {
            .axis_observers = spec_.axis_observers,
            .contact_observers = spec_.contact_observers,
            .planes = spec_.planes,
+           .contacts = spec_.contacts,
+           .encounters = spec_.encounters,
+           .free_planes = spec_.free_planes,
+           .reliefs = spec_.reliefs,
+           .boxes = spec_.boxes,
+           .spheres = spec_.spheres,
+           .cylinders = spec_.cylinders,
+           .capsules = spec_.capsules,
+           .meshes = scene_->meshes,
+           .point_guides = spec_.point_guides,
+           .line_guides = spec_.line_guides,
+           .curve_guides = spec_.curve_guides,
+           .curve_points = spec_.curve_points,
+           .viscous_fields = spec_.viscous_fields,
+           .constant_fields = spec_.constant_fields,
+           .detents = spec_.detents,
+           .magnets = spec_.magnets,
+           .vibrations = spec_.vibrations,
+           .paths = spec_.paths,
+           .waypoints = spec_.waypoints,
+           .groups = scene_->groups.groups,
+           .group_contacts = scene_->groups.group_contacts,
+           .gains = scene_->groups.gains,
            .travels = spec_.travels,
            .power_limits = spec_.power_limits,
            .thermals = spec_.thermals,
@@ -128,6 +157,26 @@ void Program::make_state() {
   for (auto* part : {&state_.reach, &state_.ramp}) *part = rest.take(devices);
   std::fill(state_.reach.begin(), state_.reach.end(), 1.0);
   std::fill(state_.fade.begin(), state_.fade.end(), 1.0);
+}
+
+void Program::make_scene_state() {
+  const auto make = [](auto& storage, auto& span, std::size_t count) {
+    storage.resize(count);
+    span = storage;
+  };
+  make(encounters_, state_.encounters, spec_.encounters.size());
+  make(walks_, state_.walks, scene_->walks);
+  make(segments_, state_.segments, scene_->segments);
+  make(contacts_, state_.contacts, spec_.contacts.size());
+  make(members_, state_.members, scene_->groups.group_contacts.size());
+  make(near_, state_.near, spec_.encounters.size());
+  make(coupling_memory_, state_.coupling_memory, scene_->groups.memory);
+  make(network_, state_.network, scene_->groups.states);
+  std::iota(near_.begin(), near_.end(), 0u);
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    contacts_[c].near_count = spec_.contacts[c].encounters;
+    contacts_[c].proxy = spec_.contacts[c].fixed;
+  }
 }
 
 }  // namespace hapticd::build

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "control/build/coupling.h"
+#include "control/build/mesh.h"
 #include "control/plan.h"
 #include "control/state.h"
 
@@ -36,6 +38,35 @@ struct ProgramSpec {
   std::vector<control::ObserverPlan> axis_observers;
   std::vector<control::ObserverPlan> contact_observers;
   std::vector<control::PlaneContact> planes;
+  /// One per device where there are encounters, coupling or networks, else none. Encounters name
+  /// their contact; Program sorts them, and fills what ContactPlan says of groups and encounters.
+  std::vector<control::ContactPlan> contacts;
+  std::vector<control::Encounter> encounters;
+  std::vector<control::Plane> free_planes;
+  std::vector<control::Relief> reliefs;
+  std::vector<control::Box> boxes;
+  std::vector<control::Sphere> spheres;
+  std::vector<control::Cylinder> cylinders;
+  std::vector<control::Capsule> capsules;
+  std::vector<std::shared_ptr<const MeshData>> meshes;
+  std::vector<control::PointGuide> point_guides;
+  std::vector<control::LineGuide> line_guides;
+  std::vector<control::CurveGuide> curve_guides;
+  std::vector<Vec3> curve_points;
+  std::vector<control::ViscousField> viscous_fields;
+  std::vector<control::ConstantField> constant_fields;
+  std::vector<control::Detents> detents;
+  std::vector<control::Magnet> magnets;
+  std::vector<control::Vibration> vibrations;
+  std::vector<control::Path> paths;
+  std::vector<control::Waypoint> waypoints;
+  std::vector<CouplingBlock> coupling;
+  std::vector<Network> networks;
+  Integrator integrator = Integrator::backward_euler;
+  std::size_t network_substeps = 1;
+  std::uint16_t max_sweeps = 50;
+  double solver_tolerance = 1e-10;  ///< N
+  std::vector<double> sharpen;      ///< per contact; empty: 0 (control/coupling/group.h)
   std::vector<control::TravelPlan> travels;
   std::vector<control::PowerLimit> power_limits;
   std::vector<control::ThermalPlan> thermals;
@@ -48,10 +79,13 @@ struct ProgramSpec {
   std::vector<bool> rotary;  ///< per axis: rad, N m instead of m, N; empty: none is
 };
 
+struct Scene;
+
 /// Not movable: plan and state hold spans into it.
 class Program {
  public:
   explicit Program(ProgramSpec spec);
+  ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
@@ -64,9 +98,11 @@ class Program {
   void complete_kinematics();
   void make_plan();
   void make_state();
+  void make_scene_state();
   std::size_t coordinates() const noexcept;
 
   ProgramSpec spec_;
+  std::unique_ptr<Scene> scene_;
   std::vector<control::AxisState> axes_;
   std::vector<control::LedgerState> ledger_;
   std::vector<control::HomingState> homings_;
@@ -77,6 +113,12 @@ class Program {
   std::vector<control::ObserverState> axis_observers_, contact_observers_;
   std::vector<control::PassivityState> passivity_controllers_;
   std::vector<double> heat_, jacobian_, recorded_, unrecorded_;
+  std::vector<control::EncounterState> encounters_;
+  std::vector<control::MeshWalk> walks_;
+  std::vector<std::uint32_t> segments_, near_;
+  std::vector<control::ContactState> contacts_;
+  std::vector<control::Member> members_;
+  std::vector<double> coupling_memory_, network_;
   std::size_t jacobian_size_ = 0;
   control::Plan plan_;
   control::State state_;

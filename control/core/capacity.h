@@ -11,6 +11,8 @@ inline constexpr std::size_t kMaxAxes = 48;
 inline constexpr std::size_t kMaxCoordinates = 48;        ///< contact coordinates over all devices
 inline constexpr std::size_t kMaxContactCoordinates = 3;  ///< of one contact
 inline constexpr std::size_t kMaxObjects = 100'000;       ///< scene objects
+/// Numbers that one group of contacts remembers of its coupling, or of its networks.
+inline constexpr std::size_t kMaxGroupStates = 96;
 inline constexpr std::size_t kMaxJoints = kMaxAxesPerDevice;  ///< of one serial chain
 inline constexpr std::size_t kMaxWindow = 32;      ///< samples that a velocity estimator looks at
 inline constexpr std::size_t kMaxDelayTicks = 14;  ///< whole ticks from command to force

@@ -25,12 +25,15 @@ struct AxisSample {
   std::uint32_t drive_faults = 0;  ///< faults that the drive itself reports, driver-specific bits
 };
 
-/// What else a device reports each tick.
+/// What else a device reports each tick. Records copy it whole, so it has no padding, whose bytes
+/// would differ from run to run.
 struct Aux {
-  std::uint32_t digital = 0;         ///< buttons, dead-man, e-stop: one bit each
-  bool armed = false;                ///< power stage on: efforts that are commanded are delivered
-  bool faulted = false;              ///< the device cannot go on; Device::fault_text says why
+  std::uint32_t digital = 0;  ///< buttons, dead-man, e-stop: one bit each
+  bool armed = false;         ///< power stage on: efforts that are commanded are delivered
+  bool faulted = false;       ///< the device cannot go on; Device::fault_text says why
+  std::uint16_t unused = 0;
   std::array<double, 6> analogue{};  ///< force sensor and the like, SI
 };
+static_assert(sizeof(Aux) == 56);
 
 }  // namespace hapticd

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "control/scene/solve.h"
+
 namespace hapticd::control {
 namespace {
 
@@ -27,6 +29,10 @@ double stored_energy(const Plan& plan, const State& state, const DevicePlan& dev
     if (plane.first_coordinate == device.first_coordinate)
       sum += stored_energy(plane, &state.x[plane.first_coordinate]);
   }
+  for (const ContactPlan& contact : plan.contacts) {
+    if (contact.first_coordinate == device.first_coordinate)
+      sum += stored_energy(plan, state, contact);
+  }
   return sum;
 }
 
@@ -44,9 +50,27 @@ void add_force(const PlaneContact& plane, const double* x, const double* v,
   for (std::size_t i = 0; i < plane.coordinates; ++i) force[i] += plane.normal[i] * push;
 }
 
-void render(const Plan& plan, State& state) noexcept {
+namespace {
+
+void solve_all(const Plan& plan, State& state, const TickInput& input,
+               Findings& findings) noexcept {
+  state.scene_last_s = state.scene_time_s;
+  state.scene_time_s = static_cast<double>(input.tick) * plan.period_s;
+  for (std::size_t i = 0; i < plan.contacts.size(); ++i) {
+    if (plan.contacts[i].group == ContactPlan::kNoGroup) touch_directly(plan, state, i);
+  }
+  for (std::size_t i = 0; i < plan.groups.size(); ++i) solve_group(plan, state, i);
+  for (const ContactState& contact : state.contacts) {
+    if (contact.slack != Vec3{}) findings.limits.set(Limit::force);
+  }
+}
+
+}  // namespace
+
+void render(const Plan& plan, State& state, const TickInput& input, Findings& findings) noexcept {
   std::fill(state.scene_force.begin(), state.scene_force.end(), 0.0);
   add_all(plan.planes, state);
+  if (!plan.contacts.empty()) solve_all(plan, state, input, findings);
 }
 
 }  // namespace hapticd::control

@@ -24,8 +24,9 @@ std::int64_t monotonic_ns() noexcept {
 }
 
 void run(benchmark::State& state, hapticd::daemon::Now now) {
-  TickRig rig(static_cast<std::size_t>(state.range(0)), static_cast<std::size_t>(state.range(1)),
-              static_cast<std::size_t>(state.range(2)), state.range(3) != 0);
+  TickRig rig(hapticd::bench::tick_spec(
+      static_cast<std::size_t>(state.range(0)), static_cast<std::size_t>(state.range(1)),
+      static_cast<std::size_t>(state.range(2)), state.range(3) != 0));
   for (auto _ : state) {
     rig.tick(now);
     benchmark::DoNotOptimize(rig.force());

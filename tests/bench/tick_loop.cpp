@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: tick_loop TICKS [DEVICES AXES PLANES OBSERVED]\n");
     return 64;
   }
-  hapticd::bench::TickRig rig(number(2, 1), number(3, 3), number(4, 0), number(5, 0) != 0);
+  hapticd::bench::TickRig rig(
+      hapticd::bench::tick_spec(number(2, 1), number(3, 3), number(4, 0), number(5, 0) != 0));
   for (std::size_t i = number(1, 0); i > 0; --i)
     rig.tick([]() noexcept -> std::int64_t { return 0; });
   return rig.enabled() ? 0 : 1;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "control/build/filters.h"
@@ -46,12 +47,55 @@ class MemoryDevice final : public drivers::Device {
   std::size_t at_ = 0;
 };
 
+/// `devices` of `axes` axes each, x = axis; `observed`: every axis has an order-2 observer and a
+/// low-pass velocity.
+inline build::ProgramSpec tick_spec(std::size_t devices, std::size_t axes,
+                                    std::size_t planes_per_device, bool observed) {
+  build::ProgramSpec spec;
+  spec.axes.assign(devices * axes, {.unit_per_raw = 1e-6,
+                                    .offset = -1,
+                                    .modulus_raw = 4294967296.0,
+                                    .max_effort = 12,
+                                    .max_velocity = 2,
+                                    .max_step = 0.02});
+  for (std::size_t d = 0; d < devices; ++d) {
+    const auto first = static_cast<std::uint16_t>(d * axes);
+    const auto count = static_cast<std::uint16_t>(axes);
+    spec.devices.push_back({.first_axis = first,
+                            .axes = count,
+                            .first_coordinate = first,
+                            .coordinates = count,
+                            .max_force = 10,
+                            .max_slew = 5,
+                            .ramp_per_tick = 0.01,
+                            .max_stale_ticks = 3});
+    for (std::size_t p = 0; p < planes_per_device; ++p) {
+      spec.planes.push_back({.first_coordinate = first,
+                             .coordinates = count,
+                             .normal = {0.6, 0.8, 0},
+                             .stiffness = 1000,
+                             .damping = 0.5});
+    }
+  }
+  for (std::uint16_t i = 0; observed && i < devices * axes; ++i) {
+    spec.low_passes.push_back(build::low_pass(i, 200, spec.period_s));
+    spec.axis_observers.push_back(build::observer(i, static_cast<std::uint16_t>(i / axes),
+                                                  {.mode = build::ObserverMode::classic,
+                                                   .nominal_mass_kg = 0.1,
+                                                   .nominal_damping_Ns_m = 0.2,
+                                                   .cutoff_Hz = 10,
+                                                   .order = 2,
+                                                   .max_output = 1},
+                                                  spec.period_s));
+  }
+  return spec;
+}
+
 class TickRig {
  public:
-  /// `observed`: every axis has an order-2 observer and a low-pass velocity.
-  TickRig(std::size_t devices, std::size_t axes, std::size_t planes_per_device, bool observed)
-      : devices_(devices),
-        program_(spec(devices, axes, planes_per_device, observed)),
+  explicit TickRig(build::ProgramSpec spec)
+      : program_(std::move(spec)),
+        devices_(program_.plan().devices.size()),
         cycle_(pointers(), program_.plan()),
         storage_(64 * program_.plan().record.bytes),
         ring_(storage_, program_.plan().record.bytes) {
@@ -70,56 +114,15 @@ class TickRig {
   bool enabled() const noexcept { return cycle_.output().mode == control::Mode::enabled; }
 
  private:
-  static build::ProgramSpec spec(std::size_t devices, std::size_t axes,
-                                 std::size_t planes_per_device, bool observed) {
-    build::ProgramSpec spec;
-    spec.axes.assign(devices * axes, {.unit_per_raw = 1e-6,
-                                      .offset = -1,
-                                      .modulus_raw = 4294967296.0,
-                                      .max_effort = 12,
-                                      .max_velocity = 2,
-                                      .max_step = 0.02});
-    for (std::size_t d = 0; d < devices; ++d) {
-      const auto first = static_cast<std::uint16_t>(d * axes);
-      const auto count = static_cast<std::uint16_t>(axes);
-      spec.devices.push_back({.first_axis = first,
-                              .axes = count,
-                              .first_coordinate = first,
-                              .coordinates = count,
-                              .max_force = 10,
-                              .max_slew = 5,
-                              .ramp_per_tick = 0.01,
-                              .max_stale_ticks = 3});
-      for (std::size_t p = 0; p < planes_per_device; ++p) {
-        spec.planes.push_back({.first_coordinate = first,
-                               .coordinates = count,
-                               .normal = {0.6, 0.8, 0},
-                               .stiffness = 1000,
-                               .damping = 0.5});
-      }
-    }
-    for (std::uint16_t i = 0; observed && i < devices * axes; ++i) {
-      spec.low_passes.push_back(build::low_pass(i, 200, spec.period_s));
-      spec.axis_observers.push_back(build::observer(i, static_cast<std::uint16_t>(i / axes),
-                                                    {.mode = build::ObserverMode::classic,
-                                                     .nominal_mass_kg = 0.1,
-                                                     .nominal_damping_Ns_m = 0.2,
-                                                     .cutoff_Hz = 10,
-                                                     .order = 2,
-                                                     .max_output = 1},
-                                                    spec.period_s));
-    }
-    return spec;
-  }
   std::vector<drivers::Device*> pointers() {
     std::vector<drivers::Device*> result;
     for (MemoryDevice& device : devices_) result.push_back(&device);
     return result;
   }
 
-  FlushDenormals flush_denormals_;     // as the servo thread has it
-  std::vector<MemoryDevice> devices_;  // never resized: devices do not move
+  FlushDenormals flush_denormals_;  // as the servo thread has it
   build::Program program_;
+  std::vector<MemoryDevice> devices_;  // never resized: devices do not move
   daemon::Cycle cycle_;
   std::vector<std::byte> storage_;
   rt::SpscRing ring_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "control/build/filters.h"
+#include "tests/support/period.h"
 #include "tests/support/program_fixture.h"
 
 namespace hapticd::test {
@@ -19,7 +20,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector4d;
 
-constexpr double kLink_m = 0.2, kBase_m = 0.1, kPeriod_s = 1e-3;
+constexpr double kLink_m = 0.2, kBase_m = 0.1;
 constexpr double kInner_kg = 0.010, kOuter_kg = 0.006, kTip_kg = 0.003, kMotor_kgm2 = 1e-5;
 constexpr double kJoint_Nms = 8e-4;
 

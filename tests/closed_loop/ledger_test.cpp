@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "tests/support/closed_loop.h"
+#include "tests/support/period.h"
 
 namespace hapticd::test {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
 constexpr double kMass_kg = 0.1;
 
 sim::DeviceOptions device(double counts_per_m, double delay_s) {

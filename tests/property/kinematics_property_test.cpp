@@ -116,7 +116,7 @@ RC_GTEST_PROP(PowerProperty, OfASerialChainIsPreserved, ()) {
   power_is_preserved(chain, any_mount(chain.joints, any_count(1, 3)), q);
 }
 
-double any_double() {
+double any_joint() {
   const auto bits = *rc::gen::arbitrary<std::uint64_t>();
   double value;
   std::memcpy(&value, &bits, sizeof value);
@@ -132,7 +132,7 @@ void stays_finite(const Kind& kind, const Mount& mount) {
   LinkageRig rig(kind, mount);
   for (int tick = 0; tick < 4; ++tick) {
     JointAngles q{};
-    for (double& joint : q) joint = any_double();
+    for (double& joint : q) joint = any_joint();
     rig.forward(q.data());
     for (std::size_t i = 1; i < 4; ++i) {
       RC_ASSERT(std::isfinite(rig.state().x[i]));

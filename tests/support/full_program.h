@@ -3,6 +3,7 @@
 #pragma once
 #include <cmath>
 
+#include "tests/support/full_scene.h"
 #include "tests/support/program_fixture.h"
 
 namespace hapticd::test {
@@ -115,7 +116,8 @@ inline void add_serial(build::ProgramSpec& spec) {
 }  // namespace full_detail
 
 /// Four devices: three Cartesian axes with everything that an axis can have, a five-bar with
-/// contact observers, a delta, a serial arm of six joints. Each meets a wall.
+/// contact observers, a delta, a serial arm of six joints. Each meets a wall and every kind of
+/// object; the first is coupled and tied to the second, the third has a general V(z) and a network.
 inline build::ProgramSpec full_spec() {
   using namespace full_detail;
   build::ProgramSpec spec = spec_of(3);
@@ -157,6 +159,7 @@ inline build::ProgramSpec full_spec() {
     plane.first_coordinate = device.first_coordinate;
     spec.planes.push_back(plane);
   }
+  add_full_scene(spec);
   return spec;
 }
 

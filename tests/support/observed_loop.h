@@ -6,10 +6,9 @@
 #include "control/build/filters.h"
 #include "control/observer/observer.h"
 #include "tests/support/held_mass.h"
+#include "tests/support/period.h"
 
 namespace hapticd::test {
-
-inline constexpr double kPeriod_s = 1e-3;
 
 /// The paper's device: 0.01 kg, 0.022 N s/m, observer without any bound and without a blend.
 inline build::ObserverFigures paper_observer(build::ObserverMode mode, double cutoff_Hz,

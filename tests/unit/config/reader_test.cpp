@@ -44,7 +44,7 @@ TEST(Reader, UnknownKeyGetsTheNearestValidOne) {
 }
 
 TEST(Reader, UnknownKeyFarFromAllGetsTheList) {
-  expect_error(kSmall + "coupling: {}\n", "16:1", "'coupling'",
+  expect_error(kSmall + "haptics: {}\n", "16:1", "'haptics'",
                {"unknown key", "known here", "stability"});
 }
 
@@ -142,8 +142,8 @@ TEST(Reader, WordOfAnEnumerationIsCheckedAndSuggested) {
                "start.enable", {"one of on_command, when_ready", "did you mean 'when_ready'"});
   expect_error(replaced(kSmall, "driver: sim", "driver: falcon"), "5:13", "devices[0].driver",
                {"expected sim", "'falcon'"});
-  expect_error(replaced(kSmall, "- plane:", "- sphere:"), "14:5", "scene[0]",
-               {"expected plane", "'sphere'"});
+  expect_error(replaced(kSmall, "- plane:", "- spere:"), "14:5", "scene[0]",
+               {"expected one of plane, ", "did you mean 'sphere'?"});
 }
 
 TEST(Reader, SceneEntryHasOneKind) {

@@ -8,92 +8,11 @@
 
 #include "config/json_schema.h"
 #include "config/man_keys.h"
+#include "tests/unit/config/full_config.h"
 #include "tests/unit/config/support.h"
 
 namespace hapticd::config::test {
 namespace {
-
-using nlohmann::json;
-
-/// Every key that there is, each with a value that is not its default. JSON is YAML, so the reader
-/// takes it.
-const json kFull = json::parse(R"({
-  "version": 1,
-  "loop": {"rate_Hz": 500, "priority": 10, "cpu": 1, "max_gap_ticks": 7, "max_missed_per_s": 8},
-  "start": {"enable": "when_ready"},
-  "devices": [{
-    "name": "a", "driver": "sim", "latency_s": 0.001,
-    "sim": {
-      "axes": [{"mass_kg": 1, "inertia_kgm2": 1, "damping_Ns_m": 2, "damping_Nms_rad": 2, "coulomb_N": 0.1,
-                "coulomb_Nm": 0.1, "delay_s": 0.001, "position_m": 0.1, "position_rad": 0.1, "noise_counts": 1,
-                "dac_step_N": 0.01, "dac_step_Nm": 0.01, "relative": true, "index_m": 0.1, "index_rad": 0.1,
-                "stops_m": [-1, 1], "stops_rad": [-1, 1], "homed_at_s": 1}],
-      "linkage": {"inner_link_kg": 1, "outer_link_kg": 2, "tip_kg": 3, "gravity_m_s2": [0, 0, -9]},
-      "hand": {"mass_kg": 1, "stiffness_N_m": 2, "damping_Ns_m": 3, "direction": [0, 1, 0],
-               "script": [{"at_s": 1, "force_N": 2, "position_m": 0.3}]},
-      "force_sensor": {"noise_N": 0.1},
-      "substeps": 5, "seed": 9,
-      "digital": [{"at_s": 1, "bits": 3}],
-      "failures": [{"kind": "jump", "axis": "x", "at_s": 1, "for_s": 2, "size_m": 0.1, "size_rad": 0.1}]},
-    "kinematics": {"cartesian": {"directions": ["y"]}},
-    "pose": {"position_m": [1, 2, 3], "rotation_quaternion": [0, 1, 0, 0]},
-    "workspace_scale": 2,
-    "axes": [{"name": "x", "kind": "rotary",
-              "encoder": {"counts_per_m": 1000, "counts_per_rev": 1000, "bits": 20, "offset_m": 0.1,
-                          "offset_rad": 0.1, "reversed": true, "stuck_s": 1},
-              "actuator": {"max_force_N": 9, "max_torque_Nm": 9, "continuous_force_N": 3,
-                           "continuous_torque_Nm": 3, "thermal_time_s": 20},
-              "model": {"mass_kg": 1, "inertia_kgm2": 1, "damping_Ns_m": 2, "damping_Nms_rad": 2,
-                        "coulomb_N": 0.1, "coulomb_Nm": 0.1, "mass_uncertainty": 0.1, "damping_uncertainty": 0.2},
-              "velocity": {"estimator": "foaw", "cutoff_Hz": 100, "window": 9, "degree": 3, "noise_counts": 2,
-                           "bandwidth_rad_s": 700},
-              "observer": {"mode": "model", "order": 1, "cutoff_Hz": 5, "nominal_mass_kg": 1,
-                           "nominal_inertia_kgm2": 1, "nominal_damping_Ns_m": 1, "nominal_damping_Nms_rad": 1,
-                           "extra_delay_ticks": 1, "blend_s": 1, "max_force_N": 1, "max_torque_Nm": 1,
-                           "i_know_it_cancels_the_hand": true},
-              "compensation": {"viscous_share": 0.1, "coulomb_share": 0.1, "smooth_m_s": 0.1,
-                               "smooth_rad_s": 0.1, "gravity_N": 1, "gravity_Nm": 1, "swing_Nm": 1,
-                               "swing_phase_rad": 1},
-              "homing": {"by": "index", "position_m": 0.1, "position_rad": 0.1, "search_force_N": 1,
-                         "search_torque_Nm": 1, "search_velocity_m_s": 0.1, "search_velocity_rad_s": 0.1,
-                         "still_s": 0.1, "timeout_s": 5},
-              "travel": {"min_m": -1, "max_m": 1, "min_rad": -1, "max_rad": 1, "stiffness_N_m": 10,
-                         "stiffness_Nm_rad": 10, "margin_m": 0.1, "margin_rad": 0.1, "max_force_N": 1,
-                         "max_torque_Nm": 1}}],
-    "contact": {
-      "x": {"model": {"mass_kg": 1, "damping_Ns_m": 2}, "observer": {"mode": "model", "order": 1, "cutoff_Hz": 5, "nominal_mass_kg": 1,
-        "nominal_inertia_kgm2": 1, "nominal_damping_Ns_m": 1, "nominal_damping_Nms_rad": 1, "extra_delay_ticks": 1,
-        "blend_s": 1, "max_force_N": 1, "max_torque_Nm": 1, "i_know_it_cancels_the_hand": true}},
-      "y": {"model": {"mass_kg": 1, "damping_Ns_m": 2}, "observer": {"mode": "model", "order": 1, "cutoff_Hz": 5, "nominal_mass_kg": 1,
-        "nominal_inertia_kgm2": 1, "nominal_damping_Ns_m": 1, "nominal_damping_Nms_rad": 1, "extra_delay_ticks": 1,
-        "blend_s": 1, "max_force_N": 1, "max_torque_Nm": 1, "i_know_it_cancels_the_hand": true}},
-      "z": {"model": {"mass_kg": 1, "damping_Ns_m": 2}, "observer": {"mode": "model", "order": 1, "cutoff_Hz": 5, "nominal_mass_kg": 1,
-        "nominal_inertia_kgm2": 1, "nominal_damping_Ns_m": 1, "nominal_damping_Nms_rad": 1, "extra_delay_ticks": 1,
-        "blend_s": 1, "max_force_N": 1, "max_torque_Nm": 1, "i_know_it_cancels_the_hand": true}}},
-    "gravity": {"tip_mass_kg": 1, "acceleration_m_s2": [0, 0, -9]},
-    "force_sensor": {"directions": ["x"]},
-    "enable_inputs": [{"bit": 1, "active": false, "role": "estop"}],
-    "guard": {"max_force_N": 1, "max_velocity_m_s": 2, "max_velocity_rad_s": 2, "max_slew_N_s": 3, "ramp_s": 4,
-              "max_stale_ticks": 5, "max_power_W": 6, "workspace": {"min_m": [-1, -1, -1], "max_m": [1, 1, 1]},
-              "passivity_controller": {"budget_J": 0.1, "damping_share": 0.1, "leak_s": 1}}}],
-  "scene": [{"plane": {"name": "w", "devices": ["a"], "normal": [0, 1, 0], "offset_m": 0.2, "stiffness_N_m": 3,
-                       "damping_Ns_m": 0.1}}],
-  "stability": {"require": "none"},
-  "guard": {"max_force_N": 1, "max_velocity_m_s": 2, "max_velocity_rad_s": 2, "max_slew_N_s": 3, "ramp_s": 4,
-              "max_stale_ticks": 5, "max_power_W": 6, "workspace": {"min_m": [-1, -1, -1], "max_m": [1, 1, 1]},
-              "passivity_controller": {"budget_J": 0.1, "damping_share": 0.1, "leak_s": 1}},
-  "control": {"socket": "/tmp/s"},
-  "telemetry": {"flight_dir": "/tmp", "flight_s": 2, "record": "/tmp/r"}
-})");
-
-/// The kinds of kinematics that kFull does not have, in full.
-const json kOtherKinds = json::parse(R"({
-  "five_bar": {"link_m": 0.2, "base_m": 0.1},
-  "delta": {"a_m": 1, "b_m": 1, "c_m": 1, "d_m": 1, "e_m": 1, "f_m": 1, "r_m": 1, "s_m": 1,
-            "legs_deg": [0, 120, 240], "home_m": [0, 0, 1]},
-  "serial": {"joints": [{"theta_rad": 1, "d_m": 1, "a_m": 1, "alpha_rad": 1, "prismatic": true, "mass_kg": 1,
-                         "center_m": [1, 1, 1]}]}
-})");
 
 /// One key of the schema, and where it stands in a config that has it.
 struct Place {
@@ -104,6 +23,15 @@ struct Place {
   bool is_kind = false;  ///< the one key of a map that names a kind
 };
 
+bool is_nullable(const json& schema) {
+  return schema["type"].is_array() && schema["type"].back() == "null";
+}
+
+/// A number, or a list or matrix of them.
+bool is_gains(const json& schema) {
+  return schema["type"].is_array() && schema["type"].size() > 1 && schema["type"][1] == "array";
+}
+
 std::string type_of(const json& schema) {
   return schema["type"].is_array() ? schema["type"][0].get<std::string>()
                                    : schema["type"].get<std::string>();
@@ -111,7 +39,7 @@ std::string type_of(const json& schema) {
 
 /// `config` with the kind `key` at `where`.
 json with_kind(json config, const json::json_pointer& where, const std::string& key) {
-  if (!config[where].contains(key)) config[where] = json{{key, kOtherKinds.at(key)}};
+  if (!config[where].contains(key)) config[where] = json{{key, other_kind(key)}};
   return config;
 }
 
@@ -222,8 +150,8 @@ TEST(Schema, EveryRangeIsTheReaders) {
   for (const Place& place : all_places()) {
     json schema = place.schema;
     json::json_pointer where = place.where;
-    if (type_of(schema) == "array" && type_of(schema["items"]) == "number") {
-      schema = schema["items"];
+    while (type_of(schema) == "array") {
+      schema = json(schema["items"]);
       where = where / 0;
     }
     if (type_of(schema) != "number" && type_of(schema) != "integer") continue;
@@ -246,7 +174,7 @@ TEST(Schema, EveryRangeIsTheReaders) {
 TEST(Schema, EveryTypeIsTheReaders) {
   const std::vector<std::pair<std::string, json>> samples = {
       {"object", json::object({{"no_such_key", 1}})},
-      {"array", json::array({json::array()})},
+      {"array", json::parse("[[[]]]")},
       {"string", "no such word"},
       {"boolean", true}};
   for (const Place& place : all_places()) {
@@ -258,8 +186,7 @@ TEST(Schema, EveryTypeIsTheReaders) {
       }
       EXPECT_FALSE(accepts(with(place, sample))) << place.where << " takes " << sample;
     }
-    const bool nullable = place.schema["type"].is_array();
-    EXPECT_EQ(accepts(with(place, nullptr)), nullable) << place.where;
+    EXPECT_EQ(accepts(with(place, nullptr)), is_nullable(place.schema)) << place.where;
   }
 }
 
@@ -284,6 +211,22 @@ TEST(Schema, EveryListLengthIsTheReaders) {
     EXPECT_TRUE(accepts(list(max))) << place.where;
     EXPECT_FALSE(accepts(list(max + 1))) << place.where;
   }
+}
+
+TEST(Schema, GainsAreANumberAListOrAMatrixAndNothingElse) {
+  int found = 0;
+  for (const Place& place : all_places()) {
+    if (!is_gains(place.schema)) continue;
+    ++found;
+    for (const char* sound : {"1", "[1]", "[1, -2]", "[[1, 2], [3, 4]]"})
+      EXPECT_TRUE(accepts(with(place, json::parse(sound)))) << place.where << sound;
+    for (const char* wrong :
+         {"[]", "[[]]", "[[[1]]]", "[1, [2]]", "[[1], 2]", "{}", "true", "[true]"})
+      EXPECT_FALSE(accepts(with(place, json::parse(wrong)))) << place.where << wrong;
+    const json max = place.schema["maximum"];
+    EXPECT_FALSE(accepts(with(place, json::array({beyond(place.schema, max, 1)})))) << place.where;
+  }
+  EXPECT_EQ(found, 2);
 }
 
 TEST(Schema, NoMapTakesOtherKeys) {

@@ -74,6 +74,13 @@ inline Compiled compiled_of(const std::string& text) {
   return compiled ? std::move(*compiled) : Compiled{};
 }
 
+/// One of the shipped examples; it must be sound.
+inline Compiled example(const std::string& name) {
+  auto compiled = load(source_path("config/examples/" + name));
+  EXPECT_TRUE(compiled) << listed(compiled ? std::vector<ConfigError>{} : compiled.error());
+  return compiled ? std::move(*compiled) : Compiled{};
+}
+
 /// Exactly one error, at this place ("line:column"), with this path and these words in its message.
 inline void expect_error(const std::string& text, const std::string& place, const std::string& path,
                          const std::vector<std::string>& words) {

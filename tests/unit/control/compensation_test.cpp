@@ -9,6 +9,7 @@
 
 #include "control/build/filters.h"
 #include "tests/support/held_mass.h"
+#include "tests/support/period.h"
 #include "tests/support/program_fixture.h"
 
 namespace hapticd::control {
@@ -18,7 +19,7 @@ using build::ObserverMode;
 using test::Rig;
 using test::spec_of;
 
-constexpr double kPeriod_s = 1e-3;
+using test::kPeriod_s;
 
 ObserverPlan observer(ObserverMode mode, double max_output = 10) {
   return build::observer(

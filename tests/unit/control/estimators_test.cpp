@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "control/build/filters.h"
+#include "tests/support/period.h"
 #include "tests/support/program_fixture.h"
 
 namespace hapticd::control {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
+using test::kPeriod_s;
 
 /// One axis whose position is given as it is: one raw unit is one metre.
 class OneAxis {

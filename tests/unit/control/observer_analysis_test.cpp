@@ -42,7 +42,7 @@ double effective_damping(const std::vector<double>& response, double b_Ns_m, dou
   return b_Ns_m - 0.5 * kPeriod_s / (1 - std::cos(angle)) * ((1.0 - back) * sum).real();
 }
 
-ObserverPlan classic(double cutoff_Hz, int order, double b_n = 0.022) {
+ObserverPlan classic_with(double cutoff_Hz, int order, double b_n = 0.022) {
   auto figures = paper_observer(ObserverMode::classic, cutoff_Hz, order);
   figures.nominal_damping_Ns_m = b_n;
   return build::observer(0, 0, figures, kPeriod_s);
@@ -67,7 +67,7 @@ TEST(ObserverAnalysis, EffectiveDampingOfFirstOrder) {
                        {3.80217, 3.80214, 3.80203, 3.80124, 3.79841, 3.7871, 3.70738, 3.41515,
                         2.12937, -3.95134, -6.06875}}};
   for (const Row& row : rows) {
-    const auto response = impulse_response(classic(row.cutoff_Hz, 1));
+    const auto response = impulse_response(classic_with(row.cutoff_Hz, 1));
     for (std::size_t i = 0; i < std::size(kFrequency_Hz); ++i) {
       const double found = effective_damping(response, 0.022, kFrequency_Hz[i]);
       EXPECT_NEAR(found, row.b_eff[i], 1e-5 * std::abs(row.b_eff[i]))
@@ -92,7 +92,7 @@ TEST(ObserverAnalysis, PassivityLostPerKilogram) {
                          Row{50, 311.6007, 48.5475}, Row{100, 608.4324, 185.095}}) {
     for (const int order : {1, 2}) {
       const double loss =
-          -least_damping(impulse_response(classic(row.cutoff_Hz, order, 0)), 0) / 0.01;
+          -least_damping(impulse_response(classic_with(row.cutoff_Hz, order, 0)), 0) / 0.01;
       const double expected = order == 1 ? row.order_1 : row.order_2;
       EXPECT_NEAR(loss, expected, 0.003 * expected) << row.cutoff_Hz << " Hz, order " << order;
       const double a = build::low_pass_share(row.cutoff_Hz, kPeriod_s);
@@ -185,7 +185,7 @@ constexpr RadiusRow kRadius[] = {
 TEST(ObserverAnalysis, SpectralRadiusOverMassesChangedByHalf) {
   for (const RadiusRow& row : kRadius) {
     for (std::size_t i = 0; i < std::size(kCutoff_Hz); ++i) {
-      Loop loop{.plan = classic(kCutoff_Hz[i], row.order),
+      Loop loop{.plan = classic_with(kCutoff_Hz[i], row.order),
                 .wall_N_m = row.wall_Ns_m > 0 ? 1000.0 : 0.0,
                 .wall_Ns_m = row.wall_Ns_m,
                 .late = row.late};
