@@ -1,5 +1,4 @@
 // Blocks of the coupling, their coordinates in the plan's order, their matrices checked.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "config/matrices.h"
 #include "config/number.h"
 #include "control/build/scene.h"
+#include "control/core/algebra.h"
 
 namespace hapticd::config {
 namespace {
@@ -51,8 +51,7 @@ bool check_system(Compilation& compilation, const LinearSystem& v, const std::st
   }
   if (!check_positive(compilation, v.D, path + ".D", "D")) return false;
   if (v.A.size() == 0) return true;
-  const double largest =
-      Eigen::EigenSolver<MatrixXd>(v.A, false).eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = algebra::eigenvalues(v.A).cwiseAbs().maxCoeff();
   if (largest < 1) return true;
   compilation.refuse(path + ".A",
                      "expected all eigenvalues inside the unit circle, found one of "

@@ -6,7 +6,7 @@
 // Delta the least damping of the devices, in contact coordinates: Delta^-1 = J D_q^-1 J'. Springs at
 // the ends of travel take of it, too: then lambda is the fastest rate that any proof allows. All of a
 // group counts together; 0 where the theorem does not apply, or nobody knows the damping.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <optional>
 
@@ -14,6 +14,7 @@
 #include "config/coordinates.h"
 #include "config/device_groups.h"
 #include "config/matrices.h"
+#include "control/core/algebra.h"
 #include "control/design/check/weights.h"
 
 namespace hapticd::config {
@@ -78,13 +79,10 @@ std::optional<GroupMatrices> group_matrices(const Compilation& compilation,
 
 /// lambda_max(Delta^-1 K) = that of the symmetric S K S with S S = Delta^-1.
 double largest_rate(const GroupMatrices& group) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(group.inverse_damping);
-  const MatrixXd S = eigen.eigenvectors() *
-                     eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                     eigen.eigenvectors().transpose();
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(S * group.K * S, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .maxCoeff();
+  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(group.inverse_damping);
+  const MatrixXd S = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                     eigen.vectors.transpose();
+  return algebra::symmetric_eigenvalues(S * group.K * S).maxCoeff();
 }
 
 }  // namespace

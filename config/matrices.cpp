@@ -1,11 +1,11 @@
 #include "config/matrices.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 
 #include "config/compilation.h"
 #include "config/number.h"
+#include "control/core/algebra.h"
 
 namespace hapticd::config {
 namespace {
@@ -102,7 +102,7 @@ bool is_symmetric(const MatrixXd& m) {
 }
 
 double smallest_eigenvalue(const MatrixXd& m) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return algebra::symmetric_eigenvalues(m)[0];
 }
 
 bool check_positive(Compilation& compilation, const MatrixXd& m, const std::string& path,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "control/build/eigen.h"
+#include "control/core/algebra.h"
 #include "control/core/capacity.h"
 
 namespace hapticd::build {
@@ -54,9 +55,9 @@ std::string symmetry_problem(const Matrix& matrix, const std::string& name) {
 /// Of symmetric ones. `hint` is what to do.
 std::string definiteness_problem(const MatrixXd& matrix, const std::string& name,
                                  const std::string& hint) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric(matrix), Eigen::EigenvaluesOnly);
-  const double lowest = solver.eigenvalues().minCoeff();
-  if (lowest > 1e-14 * solver.eigenvalues().cwiseAbs().maxCoeff()) return {};
+  const Eigen::VectorXd values = algebra::symmetric_eigenvalues(symmetric(matrix));
+  const double lowest = values.minCoeff();
+  if (lowest > 1e-14 * values.cwiseAbs().maxCoeff()) return {};
   return name + " is not positive definite: its smallest eigenvalue is " + text(lowest) + "; " +
          hint;
 }
@@ -90,7 +91,7 @@ std::string spring_problem(const CouplingBlock& block, double period_s) {
 
 std::string pole_problem(const Matrix& A) {
   if (A.rows == 0) return {};
-  const double largest = dense(A).eigenvalues().cwiseAbs().maxCoeff();
+  const double largest = algebra::eigenvalues(dense(A)).cwiseAbs().maxCoeff();
   if (largest < 1) return {};
   return "its A is not stable: the largest eigenvalue has the size " + text(largest) +
          "; expected less than 1";

@@ -14,11 +14,11 @@
 // derivative of that, is symmetric and >= 0, whatever the step.
 #include <Eigen/Dense>
 #include <stdexcept>
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include "control/build/eigen.h"
 #include "control/build/network.h"
 #include "control/build/network_modes.h"
+#include "control/core/algebra.h"
 
 namespace hapticd::build {
 namespace {
@@ -52,7 +52,7 @@ Step exact_step(const NetworkModes& modes, double h) {
   all.block(0, n, n, m - 1) = h * modes.B;
   all.col(n + m - 1).head(n) = h * modes.drift;
   all.block(n, n + m, m, m).setIdentity();
-  const MatrixXd after = all.exp();
+  const MatrixXd after = algebra::exponential(all);
   const MatrixXd unit = after.block(0, n, n, m), rise = after.topRightCorner(n, m);
   return {.carry = after.topLeftCorner(n, n),
           .from = (unit - rise).leftCols(m - 1),

@@ -19,6 +19,7 @@
 #include <set>
 
 #include "control/build/eigen.h"
+#include "control/core/algebra.h"
 
 namespace hapticd::build {
 namespace {
@@ -39,8 +40,8 @@ struct Modes {
 
 Modes modes(const MatrixXd& matrix) {
   if (matrix.size() == 0) return {VectorXd(0), MatrixXd(0, 0)};
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  auto [values, vectors] = algebra::symmetric_eigen(matrix);
+  return {std::move(values), std::move(vectors)};
 }
 
 /// How many of ascending values are at most `limit`.

@@ -58,7 +58,7 @@ std::vector<double> frequency_grid(const Matrix& a, std::size_t points) {
     grid.push_back(kPi * std::exp(-decades * share));
   }
   if (a.size() > 0 && a.allFinite()) {
-    const Eigen::VectorXcd poles = Eigen::EigenSolver<Matrix>(a, false).eigenvalues();
+    const Eigen::VectorXcd poles = eigenvalues(a);
     for (const Complex& pole : poles) add_around(grid, pole);
   }
   for (double& angle : grid) angle = angle > kPi ? 2 * kPi - angle : std::abs(angle);

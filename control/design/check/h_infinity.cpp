@@ -41,7 +41,7 @@ std::vector<double> crossings(const System& c, double level) {
   const Vector d = balance(hamiltonian);
   const Matrix balanced = d.cwiseInverse().asDiagonal() * hamiltonian * d.asDiagonal();
   std::vector<double> angles;
-  const Eigen::VectorXcd roots = Eigen::EigenSolver<Matrix>(balanced, false).eigenvalues();
+  const Eigen::VectorXcd roots = eigenvalues(balanced);
   for (const Complex& s : roots)
     if (std::abs(s.real()) <= kOnAxis * std::abs(s) && s.imag() >= 0)
       angles.push_back(2 * std::atan(s.imag()));

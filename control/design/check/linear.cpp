@@ -1,7 +1,6 @@
 #include "control/design/check/linear.h"
 
-#include <Eigen/Dense>
-#include <limits>
+#include <Eigen/LU>
 
 namespace hapticd::check {
 
@@ -93,14 +92,6 @@ System delay(Eigen::Index m) {
   return {Matrix::Zero(m, m), Matrix::Identity(m, m), Matrix::Identity(m, m), Matrix::Zero(m, m)};
 }
 
-Eigen::VectorXcd eigenvalues(const Matrix& a) {
-  const Eigen::VectorXcd unknown =
-      Eigen::VectorXcd::Constant(a.rows(), std::numeric_limits<double>::quiet_NaN());
-  if (!a.allFinite()) return unknown;
-  const Eigen::EigenSolver<Matrix> solver(a, false);
-  return solver.info() == Eigen::Success ? solver.eigenvalues() : unknown;
-}
-
 double spectral_radius(const Matrix& a) {
   return a.size() == 0 ? 0 : eigenvalues(a).cwiseAbs().maxCoeff();
 }
@@ -110,22 +101,19 @@ Matrix symmetric_part(const Matrix& m) {
 }
 
 double smallest_eigenvalue(const Matrix& m) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+  return algebra::symmetric_eigenvalues(m).minCoeff();
 }
 
 double largest_eigenvalue(const Matrix& m) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+  return algebra::symmetric_eigenvalues(m).maxCoeff();
 }
 
 double smallest_hermitian(const ComplexMatrix& m) {
-  const ComplexMatrix h = 0.5 * (m + m.adjoint());
-  return Eigen::SelfAdjointEigenSolver<ComplexMatrix>(h, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .minCoeff();
+  return algebra::hermitian_eigenvalues(0.5 * (m + m.adjoint())).minCoeff();
 }
 
 double largest_singular(const ComplexMatrix& m) {
-  return Eigen::JacobiSVD<ComplexMatrix>(m).singularValues()(0);
+  return algebra::singular_values(m)(0);
 }
 
 }  // namespace hapticd::check

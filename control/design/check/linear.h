@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <complex>
 
+#include "control/core/algebra.h"
+
 namespace hapticd::check {
 
 using Matrix = Eigen::MatrixXd;
@@ -45,8 +47,7 @@ System inverse(const System& g);
 /// u one step later: z^-1 I of size m.
 System delay(Eigen::Index m);
 
-/// Of A; all NaN where an entry is not finite or the iteration did not end.
-Eigen::VectorXcd eigenvalues(const Matrix& a);
+using algebra::eigenvalues;
 /// Largest size of an eigenvalue of A; 0 without states; NaN as above.
 double spectral_radius(const Matrix& a);
 /// 0.5 (m + m').

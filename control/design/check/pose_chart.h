@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 
+#include "control/core/algebra.h"
 #include "control/design/check/interval.h"
 #include "control/design/check/pose_cells.h"
 #include "control/design/check/poses.h"
@@ -32,14 +33,11 @@ inline double spectral(const ChartMatrix& m) {
   } else {
     gram = m.transpose() * m;
   }
-  const Eigen::SelfAdjointEigenSolver<ChartMatrix> solver(gram, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+  return std::sqrt(std::max(0.0, algebra::symmetric_eigenvalues(gram).maxCoeff()));
 }
 
 inline double spectral3(const Eigen::Matrix3d& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m.transpose() * m,
-                                                              Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+  return spectral(ChartMatrix(m));
 }
 
 inline double squared(double x) {
@@ -55,9 +53,9 @@ class PoseChart {
         spread_(damping.cwiseSqrt().cwiseInverse()),
         steps_(damping.size()),
         bending_(0.5 * plan.period_s * demand.bending_force) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> weight(demand.weight);
-    const Eigen::VectorXd roots = weight.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-    S_ = roots.asDiagonal() * weight.eigenvectors().transpose();
+    const algebra::SymmetricEigen weight = algebra::symmetric_eigen(demand.weight);
+    const Eigen::VectorXd roots = weight.values.cwiseMax(0.0).cwiseSqrt();
+    S_ = roots.asDiagonal() * weight.vectors.transpose();
     stiffest_ = roots.maxCoeff() * kDenseMargin;
     for (Eigen::Index i = 0; i < steps_.size(); ++i)
       steps_[i] =
@@ -111,10 +109,8 @@ class PoseChart {
   bool is_surely_singular(const ChartMatrix& known, double error) const {
     if (std::isinf(at_.max_condition) || mixed_ || at_.axes != at_.coordinates) return false;
     if (!std::isfinite(error)) return false;
-    const Eigen::JacobiSVD<ChartMatrix> svd(known);
     double least = 0, inverse = 0;
-    for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) {
-      const double s = svd.singularValues()[i];
+    for (const double s : algebra::singular_values(Eigen::MatrixXd(known))) {
       least += squared(std::max(0.0, s - error));
       inverse += 1 / squared(s + error);
     }

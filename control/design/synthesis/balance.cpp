@@ -22,7 +22,7 @@ Matrix discrete_lyapunov(const Matrix& a, const Matrix& q) {
 bool well_conditioned(const Matrix& square, double least) {
   if (!square.allFinite()) return false;
   if (square.size() == 0) return true;
-  const Vector s = Eigen::JacobiSVD<Matrix>(square).singularValues();
+  const Vector s = algebra::singular_values(square);
   return s[s.size() - 1] > least * s[0];
 }
 
@@ -30,8 +30,8 @@ namespace {
 
 /// L with L L' = w, for w >= 0 up to roundoff.
 Matrix square_root(const Matrix& w) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(w);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(w);
+  return eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
@@ -43,14 +43,14 @@ std::optional<System> balanced(const System& g, double tolerance) {
   const Matrix see = discrete_lyapunov(g.A.transpose(), g.C.transpose() * g.C);
   if (!reach.allFinite() || !see.allFinite()) return std::nullopt;
   const Matrix r = square_root(reach), l = square_root(see);
-  const Eigen::JacobiSVD<Matrix> svd(l.transpose() * r, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Vector& s = svd.singularValues();
+  const algebra::SingularValues svd = algebra::singular_value_decomposition(l.transpose() * r);
+  const Vector& s = svd.values;
   Eigen::Index kept = 0;
   const double least = tolerance * std::max(s[0], g.D.norm());
   while (kept < s.size() && s[kept] > least) ++kept;
   const Vector scale = s.head(kept).cwiseSqrt().cwiseInverse();
-  const Matrix right = r * svd.matrixV().leftCols(kept) * scale.asDiagonal();
-  const Matrix left = scale.asDiagonal() * svd.matrixU().leftCols(kept).transpose() * l.transpose();
+  const Matrix right = r * svd.v.leftCols(kept) * scale.asDiagonal();
+  const Matrix left = scale.asDiagonal() * svd.u.leftCols(kept).transpose() * l.transpose();
   return System{left * g.A * right, left * g.B, g.C * right, g.D};
 }
 
@@ -59,15 +59,15 @@ std::optional<Integrators> split_integrators(const System& g, double tolerance) 
   Integrators parts{Matrix::Zero(g.outputs(), g.inputs()), g};
   if (n == 0) return parts;
   const Matrix shifted = g.A - Matrix::Identity(n, n);
-  const Eigen::JacobiSVD<Matrix> svd(shifted, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector& s = svd.singularValues();
+  const algebra::SingularValues svd = algebra::singular_value_decomposition(shifted);
+  const Vector& s = svd.values;
   const double size = std::max(s[0], 1e-12);
   Eigen::Index rank = 0;
   while (rank < n && s[rank] > tolerance * size) ++rank;
   if (rank == n) return parts;
   // null(A - I) beside range(A - I): the whole space where the eigenvalue 1 is semisimple.
   Matrix basis(n, n);
-  basis << svd.matrixV().rightCols(n - rank), svd.matrixU().leftCols(rank);
+  basis << svd.v.rightCols(n - rank), svd.u.leftCols(rank);
   if (!well_conditioned(basis, 1e-10)) return std::nullopt;
   const Eigen::PartialPivLU<Matrix> lu(basis);
   const Matrix a = lu.solve(g.A * basis), b = lu.solve(g.B), c = g.C * basis;

@@ -155,8 +155,7 @@ SdpAnswer CclProgram::step(const Affine* cost, double weight) {
     pair.z_last = pair.z.at(answer.x);
     const Index n = pair.w_last.rows();
     const Matrix off = pair.w_last * pair.z_last - Matrix::Identity(n, n);
-    complementarity_ =
-        std::max(complementarity_, Eigen::JacobiSVD<Matrix>(off).singularValues()[0]);
+    complementarity_ = std::max(complementarity_, algebra::singular_values(off)[0]);
   }
   return answer;
 }

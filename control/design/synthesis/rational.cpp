@@ -111,13 +111,13 @@ System realised(const Rational& g) {
 
 double abscissa(const System& g) {
   if (g.states() == 0) return -std::numeric_limits<double>::infinity();
-  return Eigen::EigenSolver<Matrix>(g.A, false).eigenvalues().real().maxCoeff();
+  return check::eigenvalues(g.A).real().maxCoeff();
 }
 
 System on_disc(const System& g) {
   const Eigen::Index n = g.states();
   if (n == 0) return g;
-  const double a = middle_size(Eigen::EigenSolver<Matrix>(g.A, false).eigenvalues());
+  const double a = middle_size(check::eigenvalues(g.A));
   const Matrix identity = Matrix::Identity(n, n);
   const Eigen::PartialPivLU<Matrix> lu(a * identity - g.A);
   const double root = std::sqrt(2 * a);

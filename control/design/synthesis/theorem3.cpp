@@ -58,9 +58,8 @@ Side prepare(const System& g, double period_s, double unit) {
 std::vector<double> worst_at_rest(const Matrix& rest) {
   std::vector<double> share(static_cast<std::size_t>(rest.rows()), 0);
   if (rest.rows() == 0 || !rest.allFinite()) return share;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(rest);
   Eigen::Index worst = 0;
-  eigen.eigenvectors().col(0).cwiseAbs().maxCoeff(&worst);
+  algebra::symmetric_eigen(rest).vectors.col(0).cwiseAbs().maxCoeff(&worst);
   share[static_cast<std::size_t>(worst)] = 1;
   return share;
 }

@@ -91,7 +91,7 @@ System held(const System& g) {
   Matrix both = Matrix::Zero(n + m, n + m);
   both.topLeftCorner(n, n) = g.A * kPeriod;
   both.topRightCorner(n, m) = g.B * kPeriod;
-  const Matrix step = both.exp();
+  const Matrix step = algebra::exponential(both);
   return {step.topLeftCorner(n, n), step.topRightCorner(n, m), g.C, g.D};
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "control/core/algebra.h"
 #include "control/design/check/stability.h"
 #include "control/kinematics/reach.h"
 #include "tests/support/couplings.h"
@@ -36,9 +37,7 @@ build::ProgramSpec spec_of(const Kind& kind, std::uint16_t axes, std::uint16_t c
 /// Share that springs and dampers ask at one pose.
 double share_at(const MatrixXd& jacobian, const VectorXd& damping, const MatrixXd& weight) {
   const MatrixXd spread = damping.cwiseSqrt().cwiseInverse().asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(spread * jacobian.transpose() * weight * jacobian *
-                                                 spread)
-      .eigenvalues()
+  return algebra::symmetric_eigenvalues(spread * jacobian.transpose() * weight * jacobian * spread)
       .maxCoeff();
 }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "control/core/algebra.h"
 #include "tests/support/period.h"
 
 namespace hapticd::check {
@@ -78,8 +79,7 @@ double least(const MatrixXd& K, const MatrixXd& B, const MatrixXd& damping, doub
         (test::kPeriod_s / 2 * (1 + theta + theta / z)) * damping.inverse().cast<Complex>();
     const Eigen::MatrixXcd form = c * (W.inverse() - takes);
     const Eigen::MatrixXcd he = (form + form.adjoint()) / (2 * std::norm(c));
-    smallest = std::min(
-        smallest, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(he).eigenvalues().minCoeff());
+    smallest = std::min(smallest, algebra::hermitian_eigenvalues(he).minCoeff());
   }
   return smallest;
 }
@@ -100,9 +100,7 @@ TEST(TheoremB, MatricesThatDoNotCommuteAreDecidedAsOnTheCircle) {
     for (int i = 0; i < 3; ++i) damping(i, i) = 0.5 + std::abs(normal(random));
     const MatrixXd spread = damping.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
     for (const MatrixXd& demand : passive_scene_demands(K, B, tau, test::kPeriod_s))
-      share = std::max(share, Eigen::SelfAdjointEigenSolver<MatrixXd>(spread * demand * spread)
-                                  .eigenvalues()
-                                  .maxCoeff());
+      share = std::max(share, algebra::symmetric_eigenvalues(spread * demand * spread).maxCoeff());
     // The share is the scale of damping at which the form on the circle touches zero.
     EXPECT_GT(least(K, B, 1.001 * share * damping, tau), 0);
     EXPECT_LT(least(K, B, 0.98 * share * damping, tau), 0);
