@@ -94,9 +94,13 @@ void compile_certificate(Compiled& compiled);
 /// Relative paths are relative to the config's directory.
 void resolve_paths(Config& config, const std::string& config_path);
 void check_paths(Compilation& compilation);
+/// Ranges and weights of `stability`.
+void check_stability(Compilation& compilation);
 /// Of the file that `document.config.coupling` names, into it. Empty: it is sound.
 std::vector<ConfigError> read_coupling(Document& document);
 /// Of all model files that axes of `document.config` name, into them.
 std::vector<ConfigError> read_models(Document& document);
+/// Of the file that `document.config.stability.proof` names.
+std::vector<ConfigError> read_proofs(Document& document);
 
 }  // namespace hapticd::config

@@ -8,6 +8,7 @@
 #include "config/compilation.h"
 #include "config/describe.h"
 #include "config/nearest.h"
+#include "config/number.h"
 #include "config/places.h"
 #include "config/text_check.h"
 #include "config/yaml_tree.h"
@@ -66,6 +67,7 @@ void compile_all(Compilation& compilation) {
   if (!compilation.errors.empty()) return;  // the rest would say it again, once for each axis
   check_names(compilation);
   check_paths(compilation);
+  check_stability(compilation);
   const Config& config = compilation.config;
   compilation.spec.period_s = 1 / config.loop.rate_Hz;
   std::vector<DevicePlace> places;
@@ -176,6 +178,7 @@ void resolve_paths(Config& config, const std::string& config_path) {
   make_relative_to(directory, config.telemetry.flight_dir);
   if (config.telemetry.record) make_relative_to(directory, *config.telemetry.record);
   if (config.coupling && config.coupling->file) make_relative_to(directory, *config.coupling->file);
+  if (config.stability.proof) make_relative_to(directory, *config.stability.proof);
   for (Device& device : config.devices) {
     for (Axis& axis : device.axes) {
       if (axis.model && axis.model->file) make_relative_to(directory, *axis.model->file);
@@ -202,6 +205,20 @@ void check_paths(Compilation& compilation) {
   }
 }
 
+void check_stability(Compilation& compilation) {
+  const std::optional<HandRange>& hand = compilation.config.stability.hand;
+  const auto check = [&](const char* key, const Range& range) {
+    if (range[0] <= range[1]) return;
+    compilation.refuse(std::string("stability.hand.") + key,
+                       "expected the least and then the greatest, found " +
+                           format_number(range[0]) + ", " + format_number(range[1]));
+  };
+  if (!hand) return;
+  check("mass_kg", hand->mass_kg);
+  check("damping_Ns_m", hand->damping_Ns_m);
+  check("stiffness_N_m", hand->stiffness_N_m);
+}
+
 Checked<Compiled> compile(Document document) {
   resolve_paths(document.config, document.path);
   const std::optional<Coupling>& coupling = document.config.coupling;
@@ -209,6 +226,7 @@ Checked<Compiled> compile(Document document) {
     if (auto errors = read_coupling(document); !errors.empty()) return tl::unexpected(errors);
   }
   if (auto errors = read_models(document); !errors.empty()) return tl::unexpected(errors);
+  if (auto errors = read_proofs(document); !errors.empty()) return tl::unexpected(errors);
   Compilation compilation(document);
   compile_all(compilation);
   if (!compilation.errors.empty()) return tl::unexpected(std::move(compilation.errors));

@@ -48,7 +48,8 @@ struct Document {
   /// Likewise, of the coupling file; empty: the coupling is not from a file of its own.
   std::shared_ptr<const Places> coupling_places{};
   std::optional<DesignedCoupling> designed{};
-  std::vector<NamedModel> models{};  ///< files of models, once compile() has read them
+  std::vector<NamedModel> models{};   ///< files of models, once compile() has read them
+  std::vector<DeviceProof> proofs{};  ///< of stability.proof, likewise
 };
 
 /// All that a run needs. `simulated[i]` belongs to device i.

@@ -6,24 +6,13 @@
 
 #include "config/compilation.h"
 #include "config/digest.h"
+#include "config/matrices.h"
 #include "config/number.h"
 #include "config/write_yaml.h"
 #include "control/design/check/certificate.h"
 
 namespace hapticd::config {
 namespace {
-
-/// Rows of equal length as a matrix; a ragged one is refused by a size that fits nowhere.
-check::Matrix as_matrix(const Rows& rows) {
-  const std::size_t columns = rows.empty() ? 0 : rows.front().size();
-  check::Matrix made(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].size() != columns) return check::Matrix::Zero(1, 0);
-    for (std::size_t j = 0; j < columns; ++j)
-      made(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j];
-  }
-  return made;
-}
 
 check::Certificate certificate_of(const CouplingCertificate& written) {
   return {.kind = written.kind,

@@ -15,6 +15,7 @@
 #include "config/describe_field.h"
 #include "config/describe_scene.h"
 #include "config/describe_sim.h"
+#include "config/describe_stability.h"
 #include "config/key.h"
 #include "config/schema.h"
 #include "control/core/capacity.h"
@@ -44,13 +45,6 @@ void describe(V& v, Start& s) {
       "enable", s.enable,
       {.about =
            "forces come on by 'hapticctl enable', or by themselves once all devices are ready"});
-}
-
-template <class V>
-void describe(V& v, Stability& s) {
-  v.optional(
-      "require", s.require,
-      {.about = "what must be proved before forces come on; none: nothing (see hapticd(8))"});
 }
 
 template <class V>

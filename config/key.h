@@ -88,9 +88,13 @@ struct Words<Driver> {
 };
 template <>
 struct Words<Require> {
-  static constexpr std::array<std::string_view, 2> list{"passive", "none"};
+  static constexpr std::array<std::string_view, 3> list{"passive", "robust", "none"};
 };
-
+template <>
+struct Words<HoldKind> {
+  static constexpr std::array<std::string_view, 7> list{
+      "none", "adams_hannaford", "first_order", "second_order", "zero_order", "delay", "average"};
+};
 template <>
 struct Words<check::CertificateKind> {
   static constexpr std::array<std::string_view, 3> list{"passive_closed_form", "passive_lmi",

@@ -124,6 +124,26 @@ std::vector<Eigen::Index> sorting_order(const std::vector<std::uint32_t>& coordi
   return order;
 }
 
+MatrixXd as_matrix(const Rows& rows) {
+  const std::size_t columns = rows.empty() ? 0 : rows.front().size();
+  MatrixXd made(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() != columns) return MatrixXd::Zero(1, 0);
+    for (std::size_t j = 0; j < columns; ++j)
+      made(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows[i][j];
+  }
+  return made;
+}
+
+Rows as_rows(const MatrixXd& m) {
+  Rows rows(static_cast<std::size_t>(m.rows()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Eigen::VectorXd row = m.row(static_cast<Eigen::Index>(i));
+    rows[i].assign(row.begin(), row.end());
+  }
+  return rows;
+}
+
 build::Matrix to_matrix(const MatrixXd& m) {
   build::Matrix made{.rows = static_cast<std::size_t>(m.rows()),
                      .columns = static_cast<std::size_t>(m.cols()),

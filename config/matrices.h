@@ -42,6 +42,10 @@ bool check_positive(Compilation& compilation, const Eigen::MatrixXd& m, const st
 /// Order that sorts `coordinates`: entry i is the place of the i-th smallest.
 std::vector<Eigen::Index> sorting_order(const std::vector<std::uint32_t>& coordinates);
 
+/// Rows of equal length; ragged ones become a matrix that fits nowhere.
+Eigen::MatrixXd as_matrix(const Rows& rows);
+Rows as_rows(const Eigen::MatrixXd& m);
+
 build::Matrix to_matrix(const Eigen::MatrixXd& m);
 Eigen::MatrixXd to_eigen(const build::Matrix& m);
 

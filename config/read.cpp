@@ -133,6 +133,24 @@ std::vector<ConfigError> read_models(Document& document) {
   return errors;
 }
 
+std::vector<ConfigError> read_proofs(Document& document) {
+  const std::optional<std::string>& file = document.config.stability.proof;
+  if (!file) return {};
+  std::string text;
+  ProofFile found;
+  auto places = read_named(document, "stability.proof", *file, text, found);
+  if (!places) return std::move(places.error());
+  std::vector<std::string> names;
+  for (const Device& device : document.config.devices) names.push_back(device.name);
+  for (const DeviceProof& one : found.devices) {
+    if (std::ranges::find(names, one.device) != names.end()) continue;
+    return {named_file_error(document, "stability.proof",
+                             *file + ": " + unknown_name("device", one.device, names))};
+  }
+  document.proofs = std::move(found.devices);
+  return {};
+}
+
 Checked<Document> read_file(const std::string& path) {
   return file_text(path).and_then(
       [&](std::string text) { return read_text(std::move(text), path); });

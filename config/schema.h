@@ -1,6 +1,6 @@
 // A config as plain structs, as written in the file: units of the file, defaults beside each field.
 // `describe` in config/describe.h names each key, its range and what it is for; the reader, the
-// JSON schema and the man page follow it. Devices, axes, couplings, scenes have files of their own.
+// JSON schema and the man page follow it. Devices, axes, couplings, scenes, stability have files of their own.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,6 +9,7 @@
 #include "config/schema_coupling.h"
 #include "config/schema_device.h"
 #include "config/schema_scene.h"
+#include "config/schema_stability.h"
 
 namespace hapticd::config {
 
@@ -25,12 +26,6 @@ enum class EnableWhen { on_command, when_ready };
 struct Start {
   EnableWhen enable = EnableWhen::on_command;
   bool operator==(const Start&) const = default;
-};
-
-enum class Require { passive, none };
-struct Stability {
-  Require require = Require::passive;
-  bool operator==(const Stability&) const = default;
 };
 
 struct Control {

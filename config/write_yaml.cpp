@@ -141,6 +141,9 @@ std::string to_yaml(const CouplingFile& file) {
 std::string to_yaml(const ModelFile& file) {
   return keys_of(file, "");
 }
+std::string to_yaml(const ProofFile& file) {
+  return keys_of(file, "");
+}
 std::string to_yaml(const Config& config) {
   return keys_of(config, "");
 }

@@ -8,8 +8,10 @@
 #include "control/design/check/exact.h"
 #include "control/design/synthesis/theorem3.h"
 #include "daemon/ctl_check.h"
+#include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_groups.h"
 #include "daemon/hapticctl_robust.h"
+#include "daemon/output_file.h"
 #include "daemon/stability_json.h"
 
 namespace hapticd::daemon {
@@ -56,7 +58,7 @@ struct Answers {
   Gate gate;
   Json exact = Json::array();
   Json paper = Json::array();
-  Json robust = Json::array();
+  RobustReport robust{};
 };
 
 Answers answers_for(const config::Compiled& compiled) {
@@ -66,7 +68,7 @@ Answers answers_for(const config::Compiled& compiled) {
     answers.exact.push_back(exact_json(group, period_s));
     answers.paper.push_back(paper_json(compiled, group, period_s));
   }
-  answers.robust = robust_json(compiled);
+  answers.robust = robust_report(compiled);
   return answers;
 }
 
@@ -118,15 +120,26 @@ std::string group_text(const Json& groups, const char* heading) {
 
 }  // namespace
 
-ExitCode run_certify(const std::string& path, bool json) {
+ExitCode run_certify(const std::string& path, const std::string& proof, bool json) {
   const auto compiled = config::load(path);
   if (!compiled) return print_config_errors(compiled.error(), json);
   const Answers answers = answers_for(*compiled);
+  if (!proof.empty()) {
+    if (answers.robust.proof.devices.empty()) {
+      return print_error({path + ": no robust answer is proved, so " + proof +
+                              " is not written; hapticctl certify without -o says why",
+                          ExitCode::no},
+                         json);
+    }
+    const std::string text = proof_text(answers.robust.proof, path);
+    if (auto written = replace_file(proof, text); !written)
+      return print_error(written.error(), json);
+  }
   if (json) {
     std::puts(to_text({{"ok", true},
                        {"passive", stability_json(answers.gate)},
                        {"exact", answers.exact},
-                       {"robust", answers.robust},
+                       {"robust", answers.robust.json},
                        {"paper", answers.paper}})
                   .c_str());
   } else {
@@ -135,9 +148,13 @@ ExitCode run_certify(const std::string& path, bool json) {
         group_text(answers.exact, "exact (this scene alone, sampled; void once it changes):")
             .c_str(),
         group_text(answers.paper, "paper (Theorem 3, any passive hand, no latency):").c_str(),
-        robust_text(answers.robust).c_str());
+        robust_text(answers.robust.json).c_str());
   }
-  return answers.gate.proved() ? ExitCode::ok : ExitCode::no;
+  if (!proof.empty() && !json)
+    std::printf("%s written; put this into the config:  stability: {require: robust, proof: %s}\n",
+                proof.c_str(), proof.c_str());
+  const bool proved = answers.gate.proved() || answers.gate.proved_robust();
+  return proved || !proof.empty() ? ExitCode::ok : ExitCode::no;
 }
 
 }  // namespace hapticd::daemon

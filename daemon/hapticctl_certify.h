@@ -1,4 +1,4 @@
-// `hapticctl certify CONFIG`: is it stable, by how much, and what is not covered.
+// `hapticctl certify CONFIG [-o FILE]`: is it stable, by how much, and what is not covered.
 #pragma once
 #include <string>
 
@@ -7,7 +7,8 @@
 namespace hapticd::daemon {
 
 /// Prints the answers `passive` (what the daemon goes by), `exact` (this linear scene alone),
-/// `robust` and `paper` (Theorem 3 as published). Exit: ok where every device is proved, else no.
-ExitCode run_certify(const std::string& path, bool json);
+/// `robust` and `paper` (Theorem 3 as published). `proof`: a file that gets what proves the robust answers, for
+/// stability.proof; empty: none. Exit: ok where what is demanded is proved or the file was written, else no.
+ExitCode run_certify(const std::string& path, const std::string& proof, bool json);
 
 }  // namespace hapticd::daemon

@@ -7,6 +7,7 @@
 #include "config/digest.h"
 #include "config/write_yaml.h"
 #include "daemon/ctl_check.h"
+#include "daemon/hapticctl_design_robust.h"
 #include "daemon/output_file.h"
 #include "daemon/stability_gate.h"
 #include "daemon/stability_json.h"
@@ -44,6 +45,7 @@ int report(const Error& error, bool json) {
 }  // namespace
 
 ExitCode run_design(const std::string& path, const DesignOptions& options, bool json) {
+  if (options.proof == DesignFor::robust) return run_design_robust(path, options, json);
   auto document = config::read_file(path);
   if (!document) return print_config_errors(document.error(), json);
   const auto file = design_coupling(*document, options);

@@ -12,6 +12,7 @@ enum class DesignFor {
   any_scene,   ///< Theorems A, A', B: closed form
   this_scene,  ///< the exact sampled test, for the linear scene of the config
   paper,       ///< Theorem 4 of the paper by cone complementarity
+  robust,  ///< the damping of one wall or coupling, for the devices and hands that the config gives
 };
 
 enum class DesignAim {

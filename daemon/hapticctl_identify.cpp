@@ -83,15 +83,19 @@ struct Found {
 
 Result<Found> find_model(IdentifyRun run) {
   const double longest_s = std::max(kLeastDelay_s, kLongestDelayTicks * run.setup.period_s);
-  const auto fit = identify::fit(run.session.runner.record(),
-                                 {.high_Hz = run.setup.excitation.high_Hz,
-                                  .longest_delay_s = longest_s,
-                                  .proceed = [](int iteration) {
-                                    std::fprintf(stderr, "identify: fitting, step %d\n", iteration);
-                                    return !interrupts().load();
-                                  }});
+  auto fit = identify::fit(run.session.runner.record(),
+                           {.high_Hz = run.setup.excitation.high_Hz,
+                            .longest_delay_s = longest_s,
+                            .proceed = [](int iteration) {
+                              std::fprintf(stderr, "identify: fitting, step %d\n", iteration);
+                              return !interrupts().load();
+                            }});
   if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
   if (!fit) return tl::unexpected(fit.error());
+  if (run.setup.jointed) {
+    run.held_took = run.session.held_loss.most(fit->value.viscous, fit->value.coulomb);
+    fit->half_width.viscous += run.held_took;
+  }
   run.response = response_of(run.setup, run.session);
   return Found{model_text(run, *fit), config::to_yaml(model_file(run, *fit)),
                model_json(run, *fit)};

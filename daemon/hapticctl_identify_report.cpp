@@ -166,6 +166,13 @@ std::string model_text(const IdentifyRun& run, const identify::Fit& fit) {
   text += fmt::format("{:<18} {:>12.3g} counts of the encoder, root mean square\n", "unexplained",
                       residual_counts(run, fit));
   text += "intervals of 99 %\n";
+  if (run.held_took > 0) {
+    text += fmt::format(
+        "of the viscous damping up to {:.2g} {} may be what the other joints took, which gave way: "
+        "its interval has that, too{}\n",
+        run.held_took, words.damping_unit,
+        run.setup.clamped ? "" : "; clamp them and add --clamped for a narrower one");
+  }
   if (run.setup.simulated_delay_s) {
     text += fmt::format("the simulated delay is {:.5g} ms: {} the interval\n",
                         1e3 * *run.setup.simulated_delay_s,
@@ -183,6 +190,7 @@ Json model_json(const IdentifyRun& run, const identify::Fit& fit) {
       {words.force, figure_json(fit.value.coulomb, fit.half_width.coulomb)},
       {"delay_s", figure_json(fit.value.delay_s, fit.half_width.delay_s)},
       {run.setup.rotary ? "bias_Nm" : "bias_N", figure_json(fit.value.bias, fit.half_width.bias)}};
+  json["held_joints_took"] = run.held_took;
   json["residual_counts"] = residual_counts(run, fit);
   json["latency_s"] = run.setup.latency_s;
   json["latency_covers_delay"] = run.setup.latency_s >= fit.value.delay_s + fit.half_width.delay_s;

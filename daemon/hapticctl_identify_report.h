@@ -19,6 +19,7 @@ struct IdentifyRun {
   std::string at;  ///< UTC
   /// Position per effort, or of a hand force per position.
   std::vector<identify::ResponsePoint> response;
+  double held_took = 0;  ///< of the damping's half-width: what other joints may have taken
 };
 
 config::ModelFile model_file(const IdentifyRun& run, const identify::Fit& fit);

@@ -54,7 +54,10 @@ class Loop {
       : setup_(setup),
         device_(*setup.device),
         clock_(clock),
-        session_{.runner = identify::Runner(setup.excitation, setup.period_s), .hand_force = {}},
+        session_{.runner = identify::Runner(setup.excitation, setup.period_s),
+                 .hand_force = {},
+                 .held_loss = {setup.axes.size(), setup.axis, setup.period_s}},
+        positions_(setup.axes.size(), 0.0),
         samples_(setup.axes.size()),
         effort_(setup.axes.size(), 0.0),
         delivered_(setup.axes.size(), 0.0) {
@@ -87,12 +90,18 @@ class Loop {
     book_missed(missed);
     for (std::size_t i = 0; i < readers_.size(); ++i) {
       const double position = readers_[i].read(samples_[i]);
+      positions_[i] = position;
       const bool fresh = readers_[i].fresh();
-      effort_[i] = i == setup_.axis ? session_.runner.tick(position, fresh)
-                                    : holds_[i].tick(position, fresh);
+      if (i == setup_.axis) {
+        effort_[i] = session_.runner.tick(position, fresh);
+      } else {
+        const double hold = holds_[i].tick(position, fresh);  // looks how far it strays, too
+        effort_[i] = setup_.clamped ? 0 : hold;
+      }
     }
     device_.command(effort_, delivered_);
     session_.runner.delivered(delivered_[setup_.axis]);
+    session_.held_loss.tick(positions_, delivered_);
     if (setup_.channel) session_.hand_force.push_back(aux_.analogue[*setup_.channel]);
     return {};
   }
@@ -148,6 +157,7 @@ class Loop {
   drivers::Device& device_;
   TickClock& clock_;
   IdentifySession session_;
+  std::vector<double> positions_;
   std::vector<AxisReader> readers_;
   std::vector<identify::Hold> holds_;
   std::vector<AxisSample> samples_;

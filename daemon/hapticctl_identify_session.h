@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "control/core/result.h"
+#include "control/identify/held_loss.h"
 #include "control/identify/response.h"
 #include "control/identify/runner.h"
 #include "daemon/hapticctl_identify_clock.h"
@@ -19,6 +20,7 @@ struct IdentifySession {
   identify::Runner runner;
   identify::Signal hand_force;  ///< N, a value a sample; empty without a force sensor
   double greatest_stray = 0;    ///< m or rad: of the axes that were held
+  identify::HeldLoss held_loss;
   std::int64_t missed_ticks = 0;
 };
 

@@ -64,6 +64,7 @@ class Setup {
     setup_.name = device_.name + "." + axis_.name;
     setup_.rotary = axis_.kind == config::AxisKind::rotary;
     setup_.jointed = !std::holds_alternative<config::Cartesian>(device_.kinematics);
+    setup_.clamped = options.clamped;
   }
 
   Result<IdentifySetup> make() {
@@ -189,9 +190,20 @@ class Setup {
       if (compiled_.shared_hand) setup_.notes.push_back("the simulated hand lets go of the device");
       compiled_.shared_hand.reset();
       let_go(truth.hand);
+      if (options_.clamped) clamp(truth);
     }
     setup_.by_the_clock = !simulated || options_.real_time;
     setup_.device = std::move(make_devices(compiled_)[number_]);
+  }
+
+  /// What the operator of a simulated device does.
+  void clamp(sim::DeviceOptions& truth) const {
+    constexpr double kPlay = 5e-5;  // m or rad
+    for (std::size_t i = 0; i < truth.axes.size(); ++i) {
+      if (i == setup_.axis) continue;
+      const double at = truth.axes[i].position_m;
+      truth.axes[i].stops = sim::StopOptions{.min_m = at - kPlay, .max_m = at + kPlay};
+    }
   }
 
   void let_go(sim::HandOptions& hand) {

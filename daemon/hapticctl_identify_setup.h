@@ -26,6 +26,7 @@ struct IdentifyOptions {
   std::optional<double> from_Hz, to_Hz;
   std::optional<std::uint64_t> seed;  ///< of a simulated device
   bool hand = false;                  ///< of the hand that holds the axis, not of the axis
+  bool clamped = false;               ///< the other axes are held by hand or clamp, not by force
   bool real_time = false;             ///< by the clock, whatever the driver
 };
 
@@ -33,6 +34,7 @@ struct IdentifySetup {
   std::string name;  ///< "left.x"
   bool rotary = false;
   bool jointed = false;
+  bool clamped = false;
   std::size_t axis = 0;                ///< of the device
   std::optional<std::size_t> channel;  ///< of the force sensor, along the axis
   identify::ExcitationOptions excitation;

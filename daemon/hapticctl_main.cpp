@@ -9,47 +9,16 @@
 #include <string>
 
 #include "daemon/ctl_check.h"
-#include "daemon/ctl_cost.h"
-#include "daemon/ctl_doctor.h"
-#include "daemon/ctl_plot.h"
-#include "daemon/ctl_simulate.h"
-#include "daemon/ctl_verbs.h"
 #include "daemon/ctl_why.h"
-#include "daemon/hapticctl_certify.h"
-#include "daemon/hapticctl_design.h"
-#include "daemon/hapticctl_identify.h"
+#include "daemon/hapticctl_command_line.h"
 
 namespace {
 
 using namespace hapticd;
+using daemon::add_verb;
+using daemon::CommandLine;
 using daemon::Request;
 using daemon::Verb;
-
-/// What the command line says; the verb that was named fills `run`.
-struct CommandLine {
-  CLI::App app{"Asks and tells hapticd, and works on its configs and recordings without it."};
-  std::string socket = daemon::default_socket();
-  bool json = false;
-  bool unproven = false;
-  bool csv = false;
-  std::string input, output;
-  daemon::SimulateOptions simulate;
-  daemon::CostOptions cost;
-  daemon::DoctorOptions doctor;
-  daemon::PlotOptions plot;
-  daemon::DesignOptions design;
-  daemon::IdentifyOptions identify;
-  std::string log_axes, size;  ///< checked, and put into `plot`, as they are read
-  std::function<ExitCode()> run;
-};
-
-CLI::App* add_verb(CommandLine& line, const char* name, const char* help,
-                   std::function<ExitCode()> run) {
-  CLI::App* verb = line.app.add_subcommand(name, help);
-  verb->add_flag("--json", line.json, "answer in JSON");
-  verb->callback([&line, run = std::move(run)] { line.run = run; });
-  return verb;
-}
 
 CLI::App* add_daemon_verb(CommandLine& line, Verb which, const char* help) {
   const auto name = std::string(daemon::kVerbNames[static_cast<std::size_t>(which)]);
@@ -97,67 +66,6 @@ void add_file_verbs(CommandLine& line) {
   why->add_option("FILE", line.input, "the recording, such as a flight recording")->required();
 }
 
-void add_stability(CommandLine& line) {
-  CLI::App* certify =
-      add_verb(line, "certify", "is it stable, by how much, and what does no proof cover",
-               [&line] { return daemon::run_certify(line.input, line.json); });
-  certify->add_option("CONFIG", line.input, "the config")->required();
-
-  using daemon::DesignFor, daemon::DesignStructure;
-  CLI::App* design =
-      add_verb(line, "design", "a coupling for a config, with what proves it",
-               [&line] { return daemon::run_design(line.input, line.design, line.json); });
-  design->add_option("CONFIG", line.input, "the config; its own coupling is not read")->required();
-  design->add_option("-o,--output", line.design.output, "the coupling file, replaced if it exists")
-      ->required()
-      ->type_name("FILE");
-  design
-      ->add_option("--structure", line.design.structure,
-                   "what may share a spring: decentralised, per_device or centralised")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, DesignStructure>{{"decentralised", DesignStructure::decentralised},
-                                                 {"per_device", DesignStructure::per_device},
-                                                 {"centralised", DesignStructure::centralised}},
-          CLI::ignore_case))
-      ->type_name("S");
-  design
-      ->add_option(
-          "--proof", line.design.proof,
-          "any_scene: closed form; this_scene: exact test of its networks; paper: Theorem 4")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, DesignFor>{{"any_scene", DesignFor::any_scene},
-                                           {"this_scene", DesignFor::this_scene},
-                                           {"paper", DesignFor::paper}},
-          CLI::ignore_case))
-      ->type_name("P");
-  design
-      ->add_option("--aim", line.design.aim,
-                   "stiffest, or transparent: least error against the networks of the scene")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, daemon::DesignAim>{{"stiffest", daemon::DesignAim::stiffest},
-                                                   {"transparent", daemon::DesignAim::transparent}},
-          CLI::ignore_case))
-      ->type_name("A");
-  design
-      ->add_option("--corner", line.design.corner_rad_s,
-                   "of the low-pass that the error is weighed with")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e5))
-      ->type_name("RAD_S");
-  design
-      ->add_option("--order", line.design.order,
-                   "with --proof paper: states of each block's V(z); 0: springs and dampers")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 24))
-      ->type_name("N");
-  design
-      ->add_option("--damping-share", line.design.damping_share,
-                   "share of the devices' damping that the proof may use")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 0.9999))
-      ->type_name("S");
-}
-
 void add_doctor(CommandLine& line) {
   CLI::App* doctor =
       add_verb(line, "doctor", "is this machine fit for the loop, and what does it add to latency",
@@ -172,40 +80,6 @@ void add_doctor(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::Range(1, 99))
       ->type_name("N");
-}
-
-void add_identify(CommandLine& line) {
-  daemon::IdentifyOptions& options = line.identify;
-  CLI::App* verb =
-      add_verb(line, "identify", "what an axis is made of, as a model file for the config",
-               [&line] { return daemon::run_identify(line.input, line.identify, line.json); });
-  verb->add_option("CONFIG", line.input, "the config; it is never rewritten")->required();
-  verb->add_option("--device", options.device, "of the config")->required()->type_name("D");
-  verb->add_option("--axis", options.axis, "of that device; the others are held")
-      ->required()
-      ->type_name("A");
-  verb->add_option("-o,--output", options.output, "the model file, replaced if it exists")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("--method", options.method, "stepped: a sine in steps; chirp: one that glides")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, identify::Method>{{"stepped", identify::Method::stepped},
-                                                  {"chirp", identify::Method::chirp}},
-          CLI::ignore_case))
-      ->type_name("M");
-  const auto bound = [&](const char* name, std::optional<double>& value, const char* help) {
-    verb->add_option(name, value, help)->type_name("X");
-  };
-  bound("--force", options.force, "at most, N or N m (default: half of what is allowed)");
-  bound("--travel", options.travel, "from where it is, m or rad (default: 0.02 m, 0.2 rad)");
-  bound("--speed", options.speed, "at most, m/s or rad/s (default: half of what is allowed)");
-  bound("--from", options.from_Hz, "lowest frequency, Hz (default: 2)");
-  bound("--to", options.to_Hz, "highest frequency, Hz (default: 50; with --hand 20)");
-  verb->add_option("--seed", options.seed, "noise of a simulated device")->type_name("N");
-  verb->add_flag("--hand", options.hand,
-                 "of the hand that holds the axis, by the device's force sensor");
-  verb->add_flag("--real-time", options.real_time,
-                 "by the clock; real devices always are, simulated ones run as fast as they can");
 }
 
 void add_cost(CommandLine& line) {
@@ -252,8 +126,7 @@ void describe(CommandLine& line) {
   add_daemon_verb(line, Verb::estop, "zero force in the next tick");
   add_daemon_verb(line, Verb::reload, "load the config anew");
   add_file_verbs(line);
-  add_stability(line);
-  add_identify(line);
+  daemon::add_design_verbs(line);
   add_cost(line);
   add_doctor(line);
   add_plot(line);

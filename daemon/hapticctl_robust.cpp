@@ -5,143 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/design/check/models.h"
-#include "control/design/check/robust.h"
+#include "config/key.h"
+#include "config/matrices.h"
+#include "config/write_yaml.h"
 #include "control/design/synthesis/common_search.h"
 #include "control/design/synthesis/sampled_search.h"
-#include "control/design/synthesis/transmitted.h"
-#include "daemon/hapticctl_groups.h"
 
 namespace hapticd::daemon {
 namespace {
-
-using check::System;
-
-/// The estimator of an axis, as the simple planes use it; nothing: it has no linear model.
-std::optional<System> velocity_of(const control::Plan& plan, std::uint16_t axis) {
-  for (const auto& one : plan.foaws)
-    if (one.axis == axis) return {};
-  for (const auto& one : plan.low_passes)
-    if (one.axis == axis) return check::velocity_of(one, plan.period_s);
-  for (const auto& one : plan.least_squares)
-    if (one.axis == axis) return check::velocity_of(one);
-  for (const auto& one : plan.alpha_beta_gammas)
-    if (one.axis == axis) return check::velocity_of(one, plan.period_s);
-  return check::backward_difference(plan.period_s);
-}
-
-std::string device_problem(const config::Compiled& compiled, std::size_t d) {
-  const control::DevicePlan& device = compiled.program->plan().devices[d];
-  const config::Device& written = compiled.document.config.devices[d];
-  if (device.axes != 1 || device.coordinates != 1 ||
-      !std::holds_alternative<config::Cartesian>(written.kinematics))
-    return "the exact loop is known for devices of one axis";
-  const auto& model = written.axes[0].model;
-  if (!model || !(model->mass_kg || model->inertia_kgm2) ||
-      !(model->damping_Ns_m || model->damping_Nms_rad))
-    return "the axis has no `model` with mass and damping";
-  return {};
-}
-
-/// What acts on the axis beside wall, coupling and observer, and is not in the loop that is looked at.
-std::string beside(const control::Plan& plan, std::size_t d) {
-  const control::DevicePlan& device = plan.devices[d];
-  const auto own = [&](const auto& all, auto&& axis_of) {
-    return std::ranges::any_of(all, [&](const auto& one) {
-      return axis_of(one) >= device.first_axis && axis_of(one) < device.first_axis + device.axes;
-    });
-  };
-  const auto axis = [](const auto& one) { return int{one.axis}; };
-  if (own(plan.frictions, axis)) return "a compensation of friction acts on the axis";
-  if (own(plan.gravity_axes, axis)) return "a compensation of weight acts on the axis";
-  if (own(plan.travels, axis)) return "springs at the ends of its travel act on the axis";
-  for (const control::ObserverPlan& observer : plan.contact_observers)
-    if (observer.device == d) return "an observer acts at its contact";
-  for (const control::ObserverPlan& observer : plan.axis_observers) {
-    if (observer.source == device.first_axis && observer.command_share != 0)
-      return "an observer that feeds commands back is lost with some hands, and no range of hands "
-             "is known";
-  }
-  return {};
-}
-
-void take_box(const config::Device& written, double latency_s, AxisLoop& one) {
-  const config::AxisModel& model = *written.axes[0].model;
-  one.mass = model.mass_kg ? *model.mass_kg : *model.inertia_kgm2;
-  one.damping = model.damping_Ns_m ? *model.damping_Ns_m : *model.damping_Nms_rad;
-  one.mass_share = model.mass_uncertainty;
-  one.damping_share = model.damping_uncertainty;
-  one.box.mass_kg = {one.mass * (1 - one.mass_share), one.mass * (1 + one.mass_share)};
-  one.box.damping_Ns_m = {one.damping * (1 - one.damping_share),
-                          one.damping * (1 + one.damping_share)};
-  one.box.latency_s = {0, latency_s};
-  one.box.contact = {0, 1};
-}
-
-/// One plane and nothing else: its force is K x + B_c v.
-bool take_wall(const control::Plan& plan, const control::DevicePlan& device, AxisLoop& one) {
-  if (plan.planes.size() != 1) return false;
-  const control::PlaneContact& plane = plan.planes[0];
-  if (plane.first_coordinate != device.first_coordinate) return false;
-  const auto velocity = velocity_of(plan, device.first_axis);
-  if (!velocity) {
-    one.why = "the velocity estimator foaw has no linear model";
-    return true;
-  }
-  const double scale = check::constant_jacobian(plan, {0})(0, 0) * plane.normal[0];
-  one.wall = true;
-  one.stiffness = scale * scale * plane.stiffness;
-  one.damper = scale * scale * plane.damping;
-  one.loop.force = check::direct_wall(one.stiffness, one.damper, velocity);
-  return true;
-}
-
-/// Coupling and networks alone.
-void take_scene(const config::Compiled& compiled, std::size_t d, AxisLoop& one) {
-  for (const Group& group : groups_of(compiled)) {
-    if (group.devices != check::Tied{d}) continue;
-    if (!group.linear) break;
-    one.loop.force = check::rendered_scene(group.model.F);
-    return;
-  }
-  one.why =
-      "the exact loop is known for one plane that is rendered directly, or for a coupling with "
-      "networks and nothing else";
-}
-
-AxisLoop axis_loop(const config::Compiled& compiled, std::size_t d) {
-  const control::Plan& plan = compiled.program->plan();
-  const control::DevicePlan& device = plan.devices[d];
-  AxisLoop one{.device = compiled.document.config.devices[d].name,
-               .why = device_problem(compiled, d)};
-  if (one.why.empty()) one.why = beside(plan, d);
-  if (!one.why.empty()) return one;
-  take_box(compiled.document.config.devices[d], compiled.assumed[d].latency_s, one);
-  one.loop.period_s = plan.period_s;
-  for (const control::ObserverPlan& observer : plan.axis_observers)
-    if (observer.source == device.first_axis) one.loop.observer = observer;
-  if (plan.devices.size() == 1 && plan.contacts.empty() && take_wall(plan, device, one)) return one;
-  take_scene(compiled, d, one);
-  return one;
-}
-
-/// A P for what may change from tick to tick, else for devices that stay as they are. Open, the device
-/// is alone and drifts wherever it is: that is no contraction, so the proof is about a contact that
-/// stays closed.
-check::RobustAnswer answer_of(const AxisLoop& one) {
-  const check::RobustAnswer sampled = check::robust(one.loop, one.box);
-  check::LoopBox closed = one.box;
-  closed.contact = {1, 1};
-  if (sampled.kind != check::Robust::sampled || !check::excluded(one.loop, closed).empty())
-    return sampled;
-  auto found = synthesis::find_common(one.loop, closed);
-  if (found.P.empty()) found = synthesis::find_constant(one.loop, closed);
-  if (found.P.empty()) return sampled;
-  check::RobustAnswer proved = check::robust(one.loop, closed, found.P);
-  proved.cases = sampled.cases;
-  proved.worst = sampled.worst;
-  return proved;
-}
 
 /// Share by which mass and damping may be off together, by one factor, at any of some latencies.
 double tolerated(const AxisLoop& one) {
@@ -157,73 +28,104 @@ double tolerated(const AxisLoop& one) {
   return least;
 }
 
-Json paper_of_wall(const AxisLoop& one) {
-  const synthesis::WallGoal goal{.mass_kg = one.mass,
-                                 .damping_Ns_m = one.damping,
-                                 .mass_uncertainty = one.mass_share,
-                                 .damping_uncertainty = one.damping_share,
-                                 .stiffness_N_m = one.stiffness,
-                                 .wall_damping_Ns_m = one.damper,
-                                 .period_s = one.loop.period_s,
-                                 .hold = {}};
+Json paper_of_wall(const AxisLoop& one, const config::PaperModel& model) {
+  const synthesis::WallGoal goal = paper_goal(one, model);
   if (!synthesis::malformed(goal).empty()) return nullptr;
   const double norm = synthesis::perturbation_norm(goal, one.damper);
   const bool stable = synthesis::nominally_stable(goal, one.damper);
   return {{"answer", stable && norm <= 1 ? "yes" : "no"},
           {"nominally_stable", stable},
           {"norm_dB", norm > 0 ? Json(20 * std::log10(norm)) : Json(nullptr)},
-          {"hold", "adams_hannaford"}};
+          {"hold", word_of(model.hold)}};
 }
 
-const char* name_of(check::Robust kind) {
-  switch (kind) {
-    case check::Robust::proved:
-      return "proved while the contact stays closed";
-    case check::Robust::proved_constant:
-      return "proved while the contact stays closed, for devices that do not change";
-    case check::Robust::sampled:
-      return "sampled";
-    case check::Robust::no:
-      break;
-  }
-  return "no";
+std::string hand_text(const std::optional<config::HandRange>& hand) {
+  if (!hand) return "none";
+  const auto range = [](const config::Range& r, const char* unit) {
+    return fmt::format("{:.4g} .. {:.4g} {}", r[0], r[1], unit);
+  };
+  return range(hand->mass_kg, "kg") + ", " + range(hand->damping_Ns_m, "N s/m") + ", " +
+         range(hand->stiffness_N_m, "N/m");
 }
 
-Json entry_of(const AxisLoop& one) {
+Json entry_of(const config::Compiled& compiled, const AxisLoop& one, const std::vector<Matrix>& P) {
   if (!one.why.empty())
     return {{"device", one.device}, {"answer", "not available"}, {"why", one.why}};
-  const check::RobustAnswer answer = answer_of(one);
+  const AxisAnswer answer = robust_answer(one, P);
+  const config::Stability& stability = compiled.document.config.stability;
   Json entry{{"device", one.device},
-             {"answer", name_of(answer.kind)},
-             {"why", answer.why},
-             {"cases", answer.cases},
-             {"largest_eigenvalue", answer.worst.radius},
-             {"worst", check::described(answer.worst.at)},
-             {"hand", "none"},
+             {"answer", words_of(answer)},
+             {"proved", answer.proved()},
+             {"why", answer.robust.why},
+             {"cases", answer.robust.cases},
+             {"largest_eigenvalue", answer.robust.worst.radius},
+             {"worst", check::described(answer.robust.worst.at)},
+             {"hand", hand_text(stability.hand)},
              {"tolerated_share", tolerated(one)}};
-  if (one.wall) entry["paper"] = paper_of_wall(one);
+  if (one.wall) entry["paper"] = paper_of_wall(one, stability.paper);
   return entry;
 }
 
 }  // namespace
 
-std::vector<AxisLoop> axis_loops(const config::Compiled& compiled) {
-  std::vector<AxisLoop> loops;
-  for (std::size_t d = 0; d < compiled.program->plan().devices.size(); ++d)
-    loops.push_back(axis_loop(compiled, d));
-  return loops;
+static_assert(static_cast<int>(config::HoldKind::average) ==
+              static_cast<int>(synthesis::Hold::average));
+
+synthesis::WallGoal paper_goal(const AxisLoop& one, const config::PaperModel& model) {
+  const auto polynomial = [](const std::vector<double>& powers) {
+    return check::Vector(
+        Eigen::Map<const check::Vector>(powers.data(), static_cast<Eigen::Index>(powers.size())));
+  };
+  return {.mass_kg = one.mass,
+          .damping_Ns_m = one.damping,
+          .mass_uncertainty = one.mass_share,
+          .damping_uncertainty = one.damping_share,
+          .stiffness_N_m = one.stiffness,
+          .wall_damping_Ns_m = one.damper,
+          .period_s = one.loop.period_s,
+          .hold = {.kind = static_cast<synthesis::Hold>(model.hold),
+                   .corner_rad_s = model.corner_rad_s.value_or(0),
+                   .damping_ratio = model.damping_ratio},
+          .weight = {polynomial(model.weight_numerator), polynomial(model.weight_denominator)}};
 }
 
-Json robust_json(const config::Compiled& compiled) {
-  Json all = Json::array();
-  for (const AxisLoop& one : axis_loops(compiled)) all.push_back(entry_of(one));
-  return all;
+std::vector<Matrix> find_proof(const AxisLoop& one) {
+  if (check::robust(one.loop, one.box).kind != check::Robust::sampled) return {};
+  for (const check::LoopBox& box : boxes_to_prove(one)) {
+    if (!check::excluded(one.loop, box).empty()) continue;
+    auto found = synthesis::find_common(one.loop, box);
+    if (found.P.empty()) found = synthesis::find_constant(one.loop, box);
+    if (!found.P.empty()) return found.P;
+  }
+  return {};
+}
+
+std::string proof_text(const config::ProofFile& proof, const std::string& about) {
+  return "# Quadratic Lyapunov functions z'Pz of the loop of each device, for stability.proof, "
+         "checked at every load\n"
+         "# against the config as it is then. Found for " +
+         about + "\n" + config::to_yaml(proof);
+}
+
+RobustReport robust_report(const config::Compiled& compiled) {
+  RobustReport report{.json = Json::array()};
+  for (const AxisLoop& one : axis_loops(compiled)) {
+    std::vector<Matrix> P = proof_of(compiled, one.device);
+    if (one.why.empty() && (P.empty() || !robust_answer(one, P).proved())) P = find_proof(one);
+    report.json.push_back(entry_of(compiled, one, P));
+    if (P.empty() || !one.why.empty()) continue;
+    config::DeviceProof proof{.device = one.device};
+    for (const Matrix& matrix : P) proof.P.push_back(config::as_rows(matrix));
+    report.proof.devices.push_back(std::move(proof));
+  }
+  return report;
 }
 
 std::string robust_text(const Json& robust) {
   std::string text =
-      "robust (the sampled loop, exactly: devices of the model's box, latency up to latency_s, no "
-      "hand; proofs are about a contact that stays closed):\n";
+      "robust (the sampled loop, exactly: devices of the model's box, hands of stability.hand, "
+      "latency up to "
+      "latency_s):\n";
   for (const Json& one : robust) {
     text += fmt::format("  {}: {}: {}\n", one["device"].get<std::string>(),
                         one["answer"].get<std::string>(), one["why"].get<std::string>());

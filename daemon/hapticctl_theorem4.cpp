@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "config/matrices.h"
 #include "control/design/check/h_infinity.h"
 #include "control/design/synthesis/ccl_h_infinity.h"
 #include "control/design/synthesis/transparency.h"
@@ -23,14 +24,6 @@ bool only_springs(const synthesis::CclDesign& design) {
 }
 
 }  // namespace
-
-config::Rows rows_of(const check::Matrix& m) {
-  config::Rows rows(static_cast<std::size_t>(m.rows()));
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < m.cols(); ++j)
-      rows[static_cast<std::size_t>(i)].push_back(m(i, j));
-  return rows;
-}
 
 synthesis::CclDesign design_by_theorem4(const Group& group, const synthesis::Form& form,
                                         const DesignOptions& options, double period_s) {
@@ -57,12 +50,12 @@ config::CouplingCertificate certificate_of(const Group& group, const synthesis::
     return {.kind = check::CertificateKind::passive_closed_form};
   config::CouplingCertificate certificate{.kind = check::CertificateKind::passive_lmi};
   if (!group.model.passive_network) {
-    certificate.P_scene = rows_of(design.proof.P_E);
-    certificate.Phi_scene = rows_of(design.proof.Phi_E);
+    certificate.P_scene = config::as_rows(design.proof.P_E);
+    certificate.Phi_scene = config::as_rows(design.proof.Phi_E);
   }
   if (!springs) {
-    certificate.P_coupling = rows_of(design.proof.P_V);
-    certificate.Delta_coupling = rows_of(design.proof.Delta_V);
+    certificate.P_coupling = config::as_rows(design.proof.P_V);
+    certificate.Delta_coupling = config::as_rows(design.proof.Delta_V);
   }
   return certificate;
 }

@@ -7,9 +7,6 @@
 
 namespace hapticd::daemon {
 
-/// By rows.
-config::Rows rows_of(const check::Matrix& m);
-
 /// By cone complementarity: the first iterate that Theorem 3 proves, or of all of them the most
 /// transparent. Steps are told on standard error.
 synthesis::CclDesign design_by_theorem4(const Group& group, const synthesis::Form& form,

@@ -5,11 +5,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/axis_loop.h"
+
 namespace hapticd::daemon {
 
 bool Gate::proved() const noexcept {
   return std::all_of(devices.begin(), devices.end(),
                      [](const auto& device) { return device.proved; });
+}
+
+bool Gate::proved_robust() const noexcept {
+  if (robust.empty()) return false;
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    if (!devices[i].proved && !robust[i].proved) return false;
+  return true;
 }
 
 std::string Gate::explanation() const {
@@ -24,19 +33,35 @@ std::string Gate::explanation() const {
                         devices[i].why);
     i = next;
   }
+  for (std::size_t i = 0; i < robust.size(); ++i)
+    text += fmt::format("\n  {}: {}: {}", names[i],
+                        robust[i].proved ? "robust, proved" : "robust: not proved", robust[i].why);
   if (!certificate_problem.empty()) text += "\n  " + certificate_problem;
   return text;
 }
 
 Gate decide(config::Require require, bool only_simulated, std::vector<check::PassiveAnswer> devices,
-            std::vector<std::string> names) {
+            std::vector<std::string> names, std::vector<Gate::Robust> robust) {
   Gate gate;
   gate.devices = std::move(devices);
   gate.names = std::move(names);
+  gate.robust = std::move(robust);
   if (gate.proved()) {
     gate.answer = Gate::Answer::open;
     gate.verdict =
         "forces may be enabled: passive with every passive hand, proved for every device";
+  } else if (gate.proved_robust()) {
+    gate.answer = Gate::Answer::open;
+    gate.verdict =
+        "forces may be enabled: every device is proved passive, or stable for the devices and "
+        "hands that the "
+        "config gives";
+  } else if (require == config::Require::robust) {
+    gate.answer = Gate::Answer::closed;
+    gate.verdict =
+        "forces stay off: stability.require is robust and not every device is proved; hapticctl "
+        "certify CONFIG -o "
+        "FILE looks for a proof, stability: {proof: FILE} names it";
   } else if (require == config::Require::passive) {
     gate.answer = Gate::Answer::closed;
     gate.verdict =
@@ -58,6 +83,26 @@ Gate decide(config::Require require, bool only_simulated, std::vector<check::Pas
   return gate;
 }
 
+namespace {
+
+/// Why an axis is proved or not.
+Gate::Robust robust_of(const config::Compiled& compiled, const AxisLoop& one) {
+  if (!one.why.empty()) return {false, one.why};
+  const std::vector<check::Matrix> P = proof_of(compiled, one.device);
+  if (P.empty()) return {false, "stability.proof has nothing for this device"};
+  const AxisAnswer answer = robust_answer(one, P);
+  return {answer.proved(), words_of(answer) + ": " + answer.robust.why};
+}
+
+std::vector<Gate::Robust> robust_of(const config::Compiled& compiled) {
+  std::vector<Gate::Robust> robust;
+  if (compiled.document.config.stability.require != config::Require::robust) return robust;
+  for (const AxisLoop& one : axis_loops(compiled)) robust.push_back(robust_of(compiled, one));
+  return robust;
+}
+
+}  // namespace
+
 Gate stability_gate(const config::Compiled& compiled) {
   const auto& devices = compiled.document.config.devices;
   const bool only_simulated = std::all_of(
@@ -66,7 +111,7 @@ Gate stability_gate(const config::Compiled& compiled) {
   Gate gate =
       decide(compiled.document.config.stability.require, only_simulated,
              check::passive(compiled.program->plan(), compiled.assumed, compiled.certificate.get()),
-             compiled.program->spec().device_names);
+             compiled.program->spec().device_names, robust_of(compiled));
   gate.certificate_problem = compiled.certificate_problem;
   return gate;
 }

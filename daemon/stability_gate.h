@@ -20,10 +20,20 @@ struct Gate {
   std::vector<std::string> names;
   std::string certificate_problem{};  ///< why the coupling file's certificate does not count
 
+  /// Of one device, where stability.require is robust.
+  struct Robust {
+    bool proved = false;
+    std::string why;
+  };
+  std::vector<Robust> robust{};  ///< in plan order; empty: not asked for
+
   bool permits(bool unproven) const noexcept {
     return answer == Answer::open || (answer == Answer::needs_unproven && unproven);
   }
+  /// Passive, every device.
   bool proved() const noexcept;
+  /// Every device passive or robust, where that was asked for.
+  bool proved_robust() const noexcept;
   /// The verdict and, line by line, why each device is proved or not.
   std::string explanation() const;
 };
@@ -32,6 +42,6 @@ struct Gate {
 Gate stability_gate(const config::Compiled& compiled);
 /// The rule alone.
 Gate decide(config::Require require, bool only_simulated, std::vector<check::PassiveAnswer> devices,
-            std::vector<std::string> names);
+            std::vector<std::string> names, std::vector<Gate::Robust> robust = {});
 
 }  // namespace hapticd::daemon

@@ -38,7 +38,13 @@ Json stability_json(const Gate& gate) {
   Json devices = Json::array();
   for (std::size_t i = 0; i < gate.devices.size(); ++i)
     devices.push_back(answer_json(gate.names[i], gate.devices[i]));
+  Json robust = Json::array();
+  for (std::size_t i = 0; i < gate.robust.size(); ++i)
+    robust.push_back({{"device", gate.names[i]},
+                      {"proved", gate.robust[i].proved},
+                      {"why", gate.robust[i].why}});
   return {{"proved", gate.proved()},
+          {"robust", std::move(robust)},
           {"forces_may_be_enabled", gate.permits(false)},
           {"verdict", gate.verdict},
           {"certificate_problem", text_or_null(gate.certificate_problem)},

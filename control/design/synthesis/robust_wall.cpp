@@ -63,8 +63,8 @@ LargestIndex largest_index(const SampledLoop& loop, const std::vector<LoopCase>&
   return largest;
 }
 
-RobustWallDesign design_wall(const RobustWallGoal& goal) {
-  RobustWallDesign design;
+DamperDesign design_damper(const RobustWallGoal& goal) {
+  DamperDesign design;
   const SampledLoop sample = loop_of(goal.wall, goal.dampers.low);
   design.why = check::malformed(sample, goal.box);
   const WallGoal paper = paper_goal(goal);
@@ -88,6 +88,13 @@ RobustWallDesign design_wall(const RobustWallGoal& goal) {
   design.damper_Ns_m = best.x;
   design.index = best.value;
   design.worst = largest_index(loop, cases, goal.meant).at;
+  return design;
+}
+
+RobustWallDesign design_wall(const RobustWallGoal& goal) {
+  RobustWallDesign design{design_damper(goal), {}, {}};
+  if (!design.why.empty()) return design;
+  const SampledLoop loop = loop_of(goal.wall, design.damper_Ns_m);
   design.P = find_common(loop, goal.box).P;
   if (design.P.empty()) design.P = find_constant(loop, goal.box).P;
   design.robust = check::robust(loop, goal.box, design.P, goal.per_side);

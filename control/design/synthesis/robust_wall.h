@@ -24,14 +24,19 @@ struct RobustWallGoal {
                    ///< uncertainties half the sides
 };
 
-struct RobustWallDesign {
-  double damper_Ns_m = 0;        ///< 0: none
-  double index = 0;              ///< largest J
-  LoopCase worst;                ///< whose it is
-  check::RobustAnswer robust;    ///< at that damper
-  std::vector<check::Matrix> P;  ///< that prove it; common_lyapunov.h
+struct DamperDesign {
+  double damper_Ns_m = 0;  ///< 0: none
+  double index = 0;        ///< largest J
+  LoopCase worst;          ///< whose it is
   PaperDesign paper;
   std::string why;  ///< why there is none
+};
+/// The damper alone.
+DamperDesign design_damper(const RobustWallGoal& goal);
+
+struct RobustWallDesign : DamperDesign {
+  check::RobustAnswer robust;    ///< at that damper
+  std::vector<check::Matrix> P;  ///< that prove it; common_lyapunov.h
 };
 
 /// Largest J over the cases whose contact is closed; infinity where one of all is not stable.
@@ -42,6 +47,7 @@ struct LargestIndex {
 LargestIndex largest_index(const SampledLoop& loop, const std::vector<LoopCase>& cases,
                            const WallMeant& meant);
 
+/// With what proves it.
 RobustWallDesign design_wall(const RobustWallGoal& goal);
 
 }  // namespace hapticd::synthesis

@@ -41,6 +41,22 @@ TEST(StabilityGate, NoneIsSilentOnlyForSimulatedDevices) {
   EXPECT_TRUE(real.permits(true));
 }
 
+TEST(StabilityGate, RobustIsOpenWhereEveryDeviceIsPassiveOrRobust) {
+  const auto robust = [](bool left, bool right, bool second_passive) {
+    return decide(Require::robust, true,
+                  {{.proved = true, .why = ""}, {.proved = second_passive, .why = ""}},
+                  {"left", "right"}, {{left, "a"}, {right, "b"}});
+  };
+  EXPECT_EQ(robust(false, true, false).answer, Answer::open);
+  EXPECT_EQ(robust(false, false, true).answer, Answer::open);
+  const Gate closed = robust(true, false, false);
+  EXPECT_EQ(closed.answer, Answer::closed);
+  EXPECT_FALSE(closed.permits(true));
+  EXPECT_THAT(closed.explanation(), HasSubstr("right: robust: not proved: b"));
+  // Nothing was looked at: nothing is proved.
+  EXPECT_FALSE(gate(Require::robust, true, false).permits(true));
+}
+
 TEST(StabilityGate, SaysWhyDeviceByDevice) {
   const std::string text = gate(Require::passive, true, false).explanation();
   EXPECT_THAT(text, HasSubstr("forces stay off"));

@@ -1,4 +1,4 @@
-#include "daemon/hapticctl_groups.h"
+#include "daemon/groups.h"
 
 #include "control/design/check/tied_case.h"
 
@@ -26,10 +26,6 @@ std::vector<Group> groups_of(const config::Compiled& compiled) {
 
 std::string coordinate_name(const config::Compiled& compiled, std::size_t coordinate) {
   return compiled.program->spec().coordinate_names.at(coordinate);
-}
-
-synthesis::HapticLoop loop_of(const Group& group, double period_s) {
-  return {.scene = group.model.E, .device_level = group.damping, .period_s = period_s};
 }
 
 }  // namespace hapticd::daemon

@@ -1,0 +1,230 @@
+// Robust answers as people get them: designed, proved, demanded by a config, checked again at every load; and the
+// curves around them.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/process/daemon_fixture.h"
+
+namespace hapticd::test {
+namespace {
+
+using Json = nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class RobustCtl : public DaemonTest {
+ protected:
+  void replace(std::string& text, const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  }
+  /// Paper 2's wall with this damping, and what is demanded of it.
+  std::string wall(const std::string& damping, const std::string& stability = "require: none",
+                   const std::string& model = "mass_uncertainty: 0.5") {
+    std::string text =
+        read_text(std::string(HAPTICD_SOURCE_DIR) + "/config/examples/paper2_wall.yaml");
+    replace(text, "damping_Ns_m: 1}", "damping_Ns_m: " + damping + "}");
+    replace(text, "{require: none}", "{" + stability + "}");
+    replace(text, "mass_uncertainty: 0.5", model);
+    const std::string file = dir_.file("wall.yaml");
+    std::ofstream(file) << text;
+    return file;
+  }
+  std::string demanded() const { return "require: robust, proof: " + proof_; }
+  /// Exit of check, which says whether forces may come on; the verdict.
+  int check(const std::string& config) {
+    const int code = ctl({"check", config, "--json"});
+    gate_ = Json::parse(ctl_out_)["stability"];
+    return code;
+  }
+
+  std::string proof_ = dir_.file("proof.yaml");
+  Json gate_;
+};
+
+TEST_F(RobustCtl, DesignFindsThePapersMinMaxDamperAndProvesIt) {
+  ASSERT_EQ(ctl({"design", wall("1"), "--proof", "robust", "-o", proof_, "--json"}), 0) << ctl_err_;
+  const Json found = Json::parse(ctl_out_);
+  // reference/paper2.json: exact min-max over +-50 % of the mass, with the paper's damping as given.
+  EXPECT_NEAR(found["damping_Ns_m"].get<double>(), 8.207, 0.02);
+  EXPECT_NEAR(found["paper"]["damping_Ns_m"].get<double>(), 15.2, 0.1);
+  std::ostringstream damping;
+  damping << found["damping_Ns_m"].get<double>();
+  EXPECT_EQ(check(wall(damping.str(), demanded())), 0);
+  EXPECT_TRUE(gate_["forces_may_be_enabled"]);
+  EXPECT_FALSE(gate_["proved"]);  // passive it is not
+  EXPECT_TRUE(gate_["robust"][0]["proved"]);
+}
+
+TEST_F(RobustCtl, AProofIsCheckedAgainstTheConfigAsItIs) {
+  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  check(wall("5", demanded()));
+  EXPECT_TRUE(gate_["forces_may_be_enabled"]);
+  const struct {
+    const char *damping, *model;
+  } others[] = {{"0.4", "mass_uncertainty: 0.5"},
+                {"12", "mass_uncertainty: 0.5"},
+                {"5", "mass_uncertainty: 0.9"}};
+  for (const auto& other : others) {
+    SCOPED_TRACE(std::string(other.damping) + " " + other.model);
+    check(wall(other.damping, demanded(), other.model));
+    EXPECT_FALSE(gate_["forces_may_be_enabled"]);
+    EXPECT_FALSE(gate_["robust"][0]["proved"]);
+  }
+}
+
+// A random matrix in place of each, a sign turned, a matrix of another order.
+TEST_F(RobustCtl, AProofThatWasTamperedWithProvesNothing) {
+  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  const std::string good = read_text(proof_);
+  const auto begin = good.find("- [");
+  const struct {
+    const char* what;
+    std::string rows;
+  } bad[] = {
+      {"identity", "- [1,0,0,0]\n        - [0,1,0,0]\n        - [0,0,1,0]\n        - [0,0,0,1]\n"},
+      {"negative",
+       "- [-1,0,0,0]\n        - [0,-1,0,0]\n        - [0,0,-1,0]\n        - [0,0,0,-1]\n"},
+      {"zero", "- [0,0,0,0]\n        - [0,0,0,0]\n        - [0,0,0,0]\n        - [0,0,0,0]\n"},
+      {"another order", "- [1,0]\n        - [0,1]\n"},
+      {"ragged", "- [1,0]\n        - [0]\n"}};
+  for (const auto& one : bad) {
+    SCOPED_TRACE(one.what);
+    std::ofstream(proof_) << good.substr(0, begin) << one.rows;
+    check(wall("5", demanded()));
+    EXPECT_FALSE(gate_["forces_may_be_enabled"]);
+  }
+}
+
+TEST_F(RobustCtl, AProofForAnotherDeviceOrNoneIsTold) {
+  std::ofstream(proof_) << "devices: [{device: fingre, P: [[[1]]]}]\n";
+  EXPECT_EQ(ctl({"check", wall("5", demanded())}), 65);
+  EXPECT_THAT(ctl_err_, AllOf(HasSubstr("stability.proof"), HasSubstr("did you mean 'finger'?")));
+  check(wall("5", "require: robust"));
+  EXPECT_FALSE(gate_["forces_may_be_enabled"]);
+  EXPECT_THAT(gate_["verdict"].get<std::string>(), HasSubstr("hapticctl certify CONFIG -o FILE"));
+}
+
+TEST_F(RobustCtl, TheDaemonEnablesWhatIsProvedAndNothingElse) {
+  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  const std::string recording = dir_.file("run.hrec");
+  ASSERT_EQ(
+      ctl({"simulate", wall("5", demanded()), "--duration", "0.5", "-o", recording, "--json"}), 0);
+  EXPECT_GT(Json::parse(ctl_out_)["largest_force_N"].get<double>(), 4);
+  ASSERT_EQ(
+      ctl({"simulate", wall("0.4", demanded()), "--duration", "0.5", "-o", recording, "--json"}),
+      1);
+  EXPECT_EQ(Json::parse(ctl_out_)["largest_force_N"].get<double>(), 0);
+}
+
+TEST_F(RobustCtl, HandsThatTheConfigNamesArePartOfTheBox) {
+  const std::string hand =
+      "hand: {mass_kg: [0.05, 0.06], stiffness_N_m: [200, 250], damping_Ns_m: [2, 4]}";
+  ASSERT_EQ(ctl({"certify", wall("5", "require: none, " + hand), "--json", "-o", proof_}), 0)
+      << ctl_err_;
+  const Json robust = Json::parse(ctl_out_)["robust"][0];
+  EXPECT_THAT(robust["hand"].get<std::string>(), HasSubstr("200 .. 250 N/m"));
+  EXPECT_GT(robust["cases"].get<int>(), 100);
+  check(wall("5", demanded() + ", " + hand));
+  EXPECT_TRUE(gate_["forces_may_be_enabled"]);
+  // A heavier hand is not what was proved.
+  check(wall("5",
+             demanded() +
+                 ", hand: {mass_kg: [0.05, 5], stiffness_N_m: [200, 250], damping_Ns_m: [0, 4]}"));
+  EXPECT_FALSE(gate_["forces_may_be_enabled"]);
+  EXPECT_EQ(ctl({"check", wall("5", "require: none, hand: {mass_kg: [1, 0.5]}")}), 65);
+  EXPECT_THAT(ctl_err_, HasSubstr("stability.hand.mass_kg"));
+}
+
+TEST_F(RobustCtl, ZwidthMeasuresWhatTheExactLoopSays) {
+  const std::string csv = dir_.file("z.csv");
+  ASSERT_EQ(ctl({"zwidth", wall("1"), "-o", csv, "--points", "5", "--to", "16", "--json"}), 0)
+      << ctl_err_;
+  const Json points = Json::parse(ctl_out_)["points"];
+  ASSERT_EQ(points.size(), 5U);
+  for (const Json& p : points) {
+    const double measured = p["measured_N_m"], exact = p["exact_N_m"];
+    EXPECT_NEAR(measured / exact, 1, 0.03) << p.dump();
+    EXPECT_LE(p["robust_N_m"].get<double>(), 1.01 * exact);
+    EXPECT_LE(p["passive_N_m"].get<double>(), 1.01 * exact);
+  }
+  EXPECT_NEAR(points[0]["colgate_N_m"].get<double>(), 44, 1e-9);  // 2 * 0.022 / 0.001
+  EXPECT_NEAR(points[0]["passive_N_m"].get<double>(), 44, 0.5);
+  EXPECT_THAT(read_text(csv), HasSubstr("damping[N s/m],measured[N/m]"));
+}
+
+TEST_F(RobustCtl, ZwidthWantsOneWallAndLeavesNoHalfFile) {
+  const std::string csv = dir_.file("z.csv");
+  EXPECT_EQ(ctl({"zwidth", std::string(HAPTICD_SOURCE_DIR) + "/config/examples/two_devices.yaml",
+                 "-o", csv}),
+            65);
+  EXPECT_FALSE(std::filesystem::exists(csv));
+  Process process({HAPTICCTL_BINARY, "zwidth", wall("1"), "-o", csv, "--real-time"},
+                  dir_.file("zwidth"));
+  ASSERT_TRUE(eventually([&] { return !process.err().empty(); }));
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait(), 75);
+  EXPECT_FALSE(std::filesystem::exists(csv));
+}
+
+TEST_F(RobustCtl, SweepsHaveThePapersFiguresBesideTheSampledLoops) {
+  const std::string csv = dir_.file("s.csv");
+  ASSERT_EQ(ctl({"sweep", wall("1"), "--over", "damping", "--from", "5", "--to", "15", "--points",
+                 "2", "-o", csv}),
+            0)
+      << ctl_err_;
+  std::istringstream lines(read_text(csv));
+  std::string header, first, last;
+  std::getline(lines, header);
+  std::getline(lines, first);
+  std::getline(lines, last);
+  EXPECT_THAT(header, HasSubstr("|L| paper[dB]"));
+  EXPECT_THAT(first, HasSubstr(",-4.14"));  // reference/paper2.json
+  EXPECT_THAT(last, HasSubstr(",-3.01"));
+  for (const char* over : {"stiffness", "frequency"})
+    EXPECT_EQ(ctl({"sweep", wall("1"), "--over", over, "-o", csv, "--points", "5"}), 0) << ctl_err_;
+  EXPECT_EQ(ctl({"sweep", wall("1"), "--over", "damping", "--from", "9", "--to", "3", "-o", csv}),
+            64);
+}
+
+// README's walk: from an arm that nobody knows to a wall that is proved.
+TEST_F(RobustCtl, AnUnknownArmIsIdentifiedObservedCoupledAndCertified) {
+  namespace fs = std::filesystem;
+  const fs::path mine = fs::path(dir_.path()) / "my";
+  fs::copy(std::string(HAPTICD_SOURCE_DIR) + "/config/examples/first_device", mine);
+  const auto file = [&](const char* name) { return (mine / name).string(); };
+  EXPECT_EQ(check(file("1_unknown.yaml")), 1);
+  EXPECT_FALSE(gate_["forces_may_be_enabled"]);
+  double virtual_s = 0;
+  for (const char* axis : {"left", "right"}) {
+    ASSERT_EQ(
+        ctl({"identify", file("1_unknown.yaml"), "--device", "arm", "--axis", axis, "--clamped",
+             "--from", "4", "-o", file((std::string(axis) + ".yaml").c_str()), "--json"}),
+        0)
+        << ctl_err_;
+    const Json answer = Json::parse(ctl_out_);
+    virtual_s += answer["duration_s"].get<double>();
+    const auto inside = [&](const char* key, double truth) {
+      const Json& found = answer["model"][key];
+      EXPECT_NEAR(found["value"].get<double>(), truth, found["half_width"].get<double>()) << key;
+    };
+    inside("damping_Nms_rad", 0.05);
+    inside("coulomb_Nm", 0.002);
+    inside("delay_s", 0);
+  }
+  EXPECT_LT(virtual_s, 300);
+  ASSERT_EQ(ctl({"design", file("2_identified.yaml"), "-o", file("coupling.yaml")}), 0) << ctl_err_;
+  EXPECT_EQ(ctl({"certify", file("3_coupled.yaml"), "--json"}), 0) << ctl_err_;
+  EXPECT_TRUE(Json::parse(ctl_out_)["passive"]["proved"]);
+  ASSERT_EQ(ctl({"simulate", file("3_coupled.yaml"), "--duration", "2", "-o", file("run.hrec"),
+                 "--json"}),
+            0);
+  const Json run = Json::parse(ctl_out_);
+  EXPECT_GT(run["largest_force_N"].get<double>(), 0.3);
+  EXPECT_TRUE(run["fault"].is_null()) << run.dump();
+}
+
+}  // namespace
+}  // namespace hapticd::test
