@@ -52,18 +52,22 @@ struct CommonVerdict {
   bool refuted = false;  ///< P fails for the loop `at`; else the cells were too many
   LoopCase at;           ///< lumped; the middle of the cell where it ended
 };
+/// Cells that are looked at before an answer is "undecided": about a second, since a daemon that reloads waits for it.
+/// What is searched has to be provable within the same.
+inline constexpr std::size_t kMostCells = 3000;
+
 /// Whatever changes from tick to tick.
 CommonVerdict proves_common(const SampledLoop& loop, const LoopBox& box, const Matrix& P,
-                            std::size_t most_cells = 4000);
+                            std::size_t most_cells = kMostCells);
 /// Devices and hands that do not change.
 CommonVerdict proves_constant(const SampledLoop& loop, const LoopBox& box,
-                              const std::vector<Matrix>& P, std::size_t most_cells = 20000);
+                              const std::vector<Matrix>& P, std::size_t most_cells = kMostCells);
 
 /// A P for a smaller, lumped box, that would help; empty: none.
 using FindP = std::function<Matrix(const LoopBox&)>;
 /// The same, asking for more P on the way where those that it has do not do: for searches.
 CommonVerdict completes_constant(const SampledLoop& loop, const LoopBox& box,
                                  std::vector<Matrix>& P, const FindP& find,
-                                 std::size_t most_cells = 20000);
+                                 std::size_t most_cells = kMostCells);
 
 }  // namespace hapticd::check
