@@ -213,6 +213,19 @@ void check_stability(Compilation& compilation) {
                        "expected the least and then the greatest, found " +
                            format_number(range[0]) + ", " + format_number(range[1]));
   };
+  const PaperModel& paper = compilation.config.stability.paper;
+  const auto all_zero = [](const std::vector<double>& powers) {
+    return std::ranges::all_of(powers, [](double x) { return x == 0; });
+  };
+  if (all_zero(paper.weight_numerator))
+    compilation.refuse("stability.paper.weight_numerator",
+                       "expected some coefficient that is not 0");
+  if (all_zero(paper.weight_denominator) || paper.weight_denominator.back() == 0)
+    compilation.refuse("stability.paper.weight_denominator",
+                       "expected the highest power's coefficient not to be 0");
+  if (paper.weight_numerator.size() > paper.weight_denominator.size())
+    compilation.refuse("stability.paper.weight_numerator",
+                       "expected no higher powers than in weight_denominator");
   if (!hand) return;
   check("mass_kg", hand->mass_kg);
   check("damping_Ns_m", hand->damping_Ns_m);

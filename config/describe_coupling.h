@@ -61,9 +61,8 @@ void describe(V& v, CouplingBlock& s) {
 template <class V>
 void describe(V& v, Solver& s) {
   v.optional("max_sweeps", s.max_sweeps,
-             {.about = "over all bodies that are touched, in one tick; 0: proxies stay where they "
-                       "are. Costs accuracy, never stability",
-              .min = 0,
+             {.about = "over all bodies that are touched, in one tick; fewer cost accuracy",
+              .min = 1,
               .max = 10'000});
   v.optional(
       "tolerance_N", s.tolerance_N,

@@ -95,8 +95,9 @@ bool take_wall(const control::Plan& plan, const control::DevicePlan& device, Axi
   const double scale = check::constant_jacobian(plan, {0})(0, 0) * plane.normal[0];
   one.wall = true;
   one.velocity = velocity;
-  one.stiffness = scale * scale * plane.stiffness;
-  one.damper = scale * scale * plane.damping;
+  one.scale = scale * scale;
+  one.stiffness = one.scale * plane.stiffness;
+  one.damper = one.scale * plane.damping;
   one.loop.force = check::direct_wall(one.stiffness, one.damper, velocity);
   return true;
 }
@@ -106,7 +107,10 @@ void take_scene(const config::Compiled& compiled, std::size_t d, AxisLoop& one) 
   for (const Group& group : groups_of(compiled)) {
     if (group.devices != check::Tied{d}) continue;
     if (!group.linear) break;
-    one.loop.force = check::rendered_scene(group.model.F);
+    const double scale = check::constant_jacobian(compiled.program->plan(), {d})(0, 0);
+    one.scale = scale * scale;
+    one.loop.force = check::rendered_scene(check::scaled(group.model.F, one.scale));
+    one.box.contact = {1, 1};  // nothing here lets go
     return;
   }
   one.why =
@@ -127,16 +131,10 @@ AxisLoop axis_loop(const config::Compiled& compiled, std::size_t d) {
   one.loop.period_s = plan.period_s;
   for (const control::ObserverPlan& observer : plan.axis_observers)
     if (observer.source == device.first_axis) one.loop.observer = observer;
-  if (plan.devices.size() == 1 && plan.contacts.empty() && take_wall(plan, device, one)) return one;
-  take_scene(compiled, d, one);
+  if (!(plan.devices.size() == 1 && plan.contacts.empty() && take_wall(plan, device, one)))
+    take_scene(compiled, d, one);
+  if (one.why.empty()) one.why = check::malformed(one.loop, one.box);
   return one;
-}
-
-/// The contact stays closed: where nobody holds the device it drifts once the contact is open, and that is no
-/// contraction.
-check::LoopBox closed(check::LoopBox box) {
-  box.contact = {1, 1};
-  return box;
 }
 
 }  // namespace
@@ -148,27 +146,6 @@ std::vector<AxisLoop> axis_loops(const config::Compiled& compiled) {
   return loops;
 }
 
-std::vector<check::LoopBox> boxes_to_prove(const AxisLoop& one) {
-  if (one.box.hand_N_m.low > 0) return {one.box, closed(one.box)};
-  return {closed(one.box)};
-}
-
-AxisAnswer robust_answer(const AxisLoop& one, const std::vector<check::Matrix>& P) {
-  AxisAnswer sampled{.robust = check::robust(one.loop, one.box)};
-  if (sampled.robust.kind != check::Robust::sampled || P.empty()) return sampled;
-  for (const check::LoopBox& box : boxes_to_prove(one)) {
-    AxisAnswer answer{.robust = check::robust(one.loop, box, P), .open_too = box.contact.low == 0};
-    if (answer.proved()) {
-      answer.robust.cases = sampled.robust.cases;
-      answer.robust.worst = sampled.robust.worst;
-      return answer;
-    }
-    sampled.robust.common = answer.robust.common;
-  }
-  sampled.robust.why += "; the proof that is given fails: " + sampled.robust.common.why;
-  return sampled;
-}
-
 std::vector<check::Matrix> proof_of(const config::Compiled& compiled, const std::string& device) {
   std::vector<check::Matrix> P;
   for (const config::DeviceProof& one : compiled.document.proofs) {
@@ -178,14 +155,12 @@ std::vector<check::Matrix> proof_of(const config::Compiled& compiled, const std:
   return P;
 }
 
-std::string words_of(const AxisAnswer& answer) {
-  const std::string while_closed = answer.open_too ? " whether the contact is open or closed"
-                                                   : " while the contact stays closed";
-  switch (answer.robust.kind) {
+std::string robust_words(const check::RobustAnswer& answer) {
+  switch (answer.kind) {
     case check::Robust::proved:
-      return "proved" + while_closed;
+      return "proved, whatever changes from tick to tick";
     case check::Robust::proved_constant:
-      return "proved" + while_closed + ", for devices and hands that do not change";
+      return "proved for devices and hands that do not change";
     case check::Robust::sampled:
       return "sampled";
     case check::Robust::no:

@@ -27,13 +27,6 @@ bool parse_side(std::string_view text, std::size_t& side) {
   return error == std::errc() && end == text.data() + text.size() && side >= 100 && side <= 9999;
 }
 
-Result<void> write_file(const std::string& path, const std::string& bytes) {
-  return OutputFile::create(path, IfExists::replace).and_then([&](OutputFile file) -> Result<void> {
-    if (auto written = file.write(bytes); !written) return written;
-    return file.close();
-  });
-}
-
 std::size_t points_of(const Picture& picture) {
   std::size_t points = 0;
   for (const Panel& panel : picture.panels) {
@@ -89,7 +82,7 @@ ExitCode run_plot(const std::string& path, const PlotOptions& options, bool json
   const auto drawn = run_gnuplot(
       gnuplot_script(*picture, *format, options.width, picture_height(*picture, options)));
   if (!drawn) return print_error(drawn.error(), json);
-  if (auto written = write_file(output, *drawn); !written)
+  if (auto written = replace_file(output, *drawn); !written)
     return print_error(written.error(), json);
   print_done(*picture, output, json);
   return ExitCode::ok;

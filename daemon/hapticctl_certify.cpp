@@ -11,6 +11,7 @@
 #include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_groups.h"
 #include "daemon/hapticctl_robust.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 #include "daemon/stability_json.h"
 
@@ -96,7 +97,8 @@ std::string passive_text(const Gate& gate) {
 
 std::string group_text(const Json& groups, const char* heading) {
   std::string text = std::string(heading) + "\n";
-  if (groups.empty()) text += "  not available: nothing here is coupled or tied by a network\n";
+  if (groups.empty())
+    text += "  not available: no coupling or network ties devices without joints\n";
   for (const Json& group : groups) {
     text += "  " + group["devices"].get<std::string>() + ": " + group["answer"].get<std::string>();
     if (group.contains("margin_Ns_m") && group["margin_Ns_m"].is_number())
@@ -118,23 +120,7 @@ std::string group_text(const Json& groups, const char* heading) {
   return text;
 }
 
-}  // namespace
-
-ExitCode run_certify(const std::string& path, const std::string& proof, bool json) {
-  const auto compiled = config::load(path);
-  if (!compiled) return print_config_errors(compiled.error(), json);
-  const Answers answers = answers_for(*compiled);
-  if (!proof.empty()) {
-    if (answers.robust.proof.devices.empty()) {
-      return print_error({path + ": no robust answer is proved, so " + proof +
-                              " is not written; hapticctl certify without -o says why",
-                          ExitCode::no},
-                         json);
-    }
-    const std::string text = proof_text(answers.robust.proof, path);
-    if (auto written = replace_file(proof, text); !written)
-      return print_error(written.error(), json);
-  }
+void print_answers(const Answers& answers, bool json) {
   if (json) {
     std::puts(to_text({{"ok", true},
                        {"passive", stability_json(answers.gate)},
@@ -142,19 +128,44 @@ ExitCode run_certify(const std::string& path, const std::string& proof, bool jso
                        {"robust", answers.robust.json},
                        {"paper", answers.paper}})
                   .c_str());
-  } else {
-    std::printf(
-        "%s%s%s%s", passive_text(answers.gate).c_str(),
-        group_text(answers.exact, "exact (this scene alone, sampled; void once it changes):")
-            .c_str(),
-        group_text(answers.paper, "paper (Theorem 3, any passive hand, no latency):").c_str(),
-        robust_text(answers.robust.json).c_str());
+    return;
   }
-  if (!proof.empty() && !json)
+  std::printf(
+      "%s%s%s%s", passive_text(answers.gate).c_str(),
+      group_text(answers.exact, "exact (this scene alone, sampled; void once it changes):").c_str(),
+      group_text(answers.paper, "paper (Theorem 3, any passive hand, no latency):").c_str(),
+      robust_text(answers.robust.json).c_str());
+}
+
+}  // namespace
+
+ExitCode run_certify(const std::string& path, const std::string& output, bool json) {
+  auto document = config::read_file(path);
+  if (!document) return print_config_errors(document.error(), json);
+  if (!output.empty()) {
+    if (auto writable = check_output(output, {path}); !writable)
+      return print_error(writable.error(), json);
+    document->config.stability.proof.reset();  // it is what is being made
+  }
+  const auto compiled = config::compile(std::move(*document));
+  if (!compiled) return print_config_errors(compiled.error(), json);
+  const Answers answers = answers_for(*compiled);
+  if (!output.empty() && answers.robust.proof.devices.empty()) {
+    return print_error({path + ": no robust answer is proved, so " + output +
+                            " is not written; hapticctl certify without -o says why",
+                        ExitCode::no},
+                       json);
+  }
+  if (!output.empty()) {
+    if (auto written = replace_file(output, proof_text(answers.robust.proof, path)); !written)
+      return print_error(written.error(), json);
+  }
+  print_answers(answers, json);
+  if (!output.empty() && !json)
     std::printf("%s written; put this into the config:  stability: {require: robust, proof: %s}\n",
-                proof.c_str(), proof.c_str());
+                output.c_str(), named_from(path, output).c_str());
   const bool proved = answers.gate.proved() || answers.gate.proved_robust();
-  return proved || !proof.empty() ? ExitCode::ok : ExitCode::no;
+  return proved || !output.empty() ? ExitCode::ok : ExitCode::no;
 }
 
 }  // namespace hapticd::daemon

@@ -7,7 +7,9 @@
 #include "config/digest.h"
 #include "config/write_yaml.h"
 #include "daemon/ctl_check.h"
+#include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_design_robust.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 #include "daemon/stability_gate.h"
 #include "daemon/stability_json.h"
@@ -48,6 +50,8 @@ ExitCode run_design(const std::string& path, const DesignOptions& options, bool 
   if (options.proof == DesignFor::robust) return run_design_robust(path, options, json);
   auto document = config::read_file(path);
   if (!document) return print_config_errors(document.error(), json);
+  if (auto writable = check_output(options.output, {path}); !writable)
+    return print_error(writable.error(), json);
   const auto file = design_coupling(*document, options);
   if (!file) return static_cast<ExitCode>(report(file.error(), json));
   const std::string body = config::to_yaml(*file);
@@ -75,7 +79,7 @@ ExitCode run_design(const std::string& path, const DesignOptions& options, bool 
             .c_str());
   } else {
     std::printf("%s: %s\nput this into the config:  coupling: {file: %s}\n", options.output.c_str(),
-                gate->explanation().c_str(), options.output.c_str());
+                gate->explanation().c_str(), named_from(path, options.output).c_str());
   }
   return ExitCode::ok;
 }

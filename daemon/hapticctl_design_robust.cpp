@@ -16,6 +16,7 @@
 #include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_robust.h"
 #include "daemon/interrupts.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 #include "daemon/stability_gate.h"
 #include "daemon/wall_of.h"
@@ -70,6 +71,21 @@ Result<config::Compiled> compiled_with(config::Document document, const Damper& 
   return std::move(*compiled);
 }
 
+constexpr const char* kInterrupted = "interrupted; nothing was written";
+
+/// In units of mass/period, beyond which no loop of this kind is stable.
+synthesis::Scan dampers_for(const AxisLoop& one) {
+  const double unit = one.box.mass_kg.high / one.loop.period_s;
+  return {.low = 1e-4 * unit, .high = 4 * unit, .points = 80};
+}
+bool at_edge(double damper, const synthesis::Scan& scan) {
+  return damper <= 1.02 * scan.low || damper >= 0.98 * scan.high;
+}
+std::string edge_text(double damper) {
+  return fmt::format(
+      "the best damping is beyond what is looked at, at {:.4g} N s/m: is the model right?", damper);
+}
+
 struct FoundDamper {
   double damping = 0;
   double index = 0;  ///< of a wall: largest J
@@ -89,9 +105,13 @@ Result<FoundDamper> wall_damper(const config::Compiled& compiled, const AxisLoop
       .box = one.box,
       .cases = {},
       .hold = paper.hold};
+  goal.dampers = dampers_for(one);
   const synthesis::DamperDesign found = synthesis::design_damper(goal);
+  if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
   if (!found.why.empty()) return fail(ExitCode::no, found.why);
-  return FoundDamper{.damping = rounded(found.damper_Ns_m),
+  if (at_edge(found.damper_Ns_m, goal.dampers))
+    return fail(ExitCode::no, edge_text(found.damper_Ns_m / one.scale));
+  return FoundDamper{.damping = rounded(found.damper_Ns_m / one.scale),
                      .index = found.index,
                      .worst = check::described(found.worst),
                      .paper = found.paper};
@@ -110,7 +130,13 @@ Result<FoundDamper> coupling_damper(const config::Document& document, const Damp
     worst = check::worst_of(one.loop, check::cases_of(closed));
     return worst.radius;
   };
-  const synthesis::Least best = synthesis::least(radius, {.low = 0.01, .high = 100, .points = 40});
+  const auto start = compiled_with(document, which, 0);
+  if (!start) return tl::unexpected(start.error());
+  const synthesis::Scan scan = dampers_for(axis_loops(*start).at(which.device));
+  const synthesis::Least best = synthesis::least(radius, scan);
+  if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
+  if (std::isfinite(best.value) && at_edge(best.x, scan))
+    return fail(ExitCode::no, edge_text(best.x));
   if (!std::isfinite(best.value) || radius(rounded(best.x)) >= check::kStableBelow) {
     return fail(
         ExitCode::no,
@@ -131,62 +157,82 @@ Result<Gate> gate_with(config::Document document, const Damper& which, double da
   return stability_gate(*compiled);
 }
 
-Result<config::ProofFile> proof_with(const config::Document& document, const Damper& which,
-                                     double damping) {
-  const auto compiled = compiled_with(document, which, damping);
-  if (!compiled) return tl::unexpected(compiled.error());
-  const AxisLoop one = axis_loops(*compiled).at(which.device);
+std::vector<Matrix> matrices_of(const config::ProofFile& proof) {
+  std::vector<Matrix> P;
+  for (const config::Rows& rows : proof.devices.front().P) P.push_back(config::as_matrix(rows));
+  return P;
+}
+
+/// Nothing: none was found.
+Result<std::optional<config::ProofFile>> proof_with(const AxisLoop& one) {
   const std::vector<Matrix> P = find_proof(one);
-  if (P.empty()) {
-    return fail(
-        ExitCode::no,
-        fmt::format(
-            "{:.4g} N s/m is best, but no proof was found for it, so nothing was written: {}",
-            damping, robust_answer(one, {}).robust.why));
-  }
+  if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
+  if (P.empty()) return std::nullopt;
   config::DeviceProof proof{.device = one.device};
   for (const Matrix& matrix : P) proof.P.push_back(config::as_rows(matrix));
   return config::ProofFile{.devices = {std::move(proof)}};
 }
 
-struct Written {
+struct Designed {
   Damper which;
   FoundDamper found;
-  Gate gate;
+  std::string robust;  ///< what is known of the loop with it
+  bool written = false;
 };
 
-Result<Written> design(const config::Document& document, const DesignOptions& options) {
-  config::Document base = document;
-  base.config.stability.proof.reset();
-  auto compiled = config::compile(base);
+/// The proof into the output, once the daemon's own check has accepted it.
+Result<void> write_proof(const config::Document& base, const Designed& designed,
+                         const config::ProofFile& proof, const std::string& output) {
+  const std::string draft = output + ".draft";
+  const std::string about = designed.which.key + fmt::format(": {:.4g}", designed.found.damping);
+  auto gate = replace_file(draft, proof_text(proof, about)).and_then([&] {
+    return gate_with(base, designed.which, designed.found.damping, draft);
+  });
+  std::remove(draft.c_str());
+  if (!gate) return tl::unexpected(gate.error());
+  if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
+  if (!gate->proved_robust()) {
+    return fail(
+        ExitCode::no,
+        "what was found is not proved by the daemon's own check, so nothing was written:\n" +
+            gate->explanation());
+  }
+  return replace_file(output, proof_text(proof, about));
+}
+
+/// The config without its proof, coupling and models from their files in it.
+Result<config::Document> base_of(config::Document document) {
+  document.config.stability.proof.reset();
+  auto compiled = config::compile(std::move(document));
   if (!compiled) return fail(ExitCode::bad_data, config::to_string(compiled.error().front()));
-  base = compiled->document;  // coupling and models from their files
-  base.config.stability.proof.reset();
+  config::Document base = std::move(compiled->document);
   if (base.config.coupling) base.config.coupling->file.reset();
+  return base;
+}
+
+Result<Designed> design(const config::Document& document, const DesignOptions& options) {
+  const auto base = base_of(document);
+  if (!base) return tl::unexpected(base.error());
+  const auto compiled = config::compile(*base);
+  if (!compiled) return fail(ExitCode::bad_data, config::to_string(compiled.error().front()));
   const auto which = find_damper(*compiled);
   if (!which) return tl::unexpected(which.error());
-  const AxisLoop one = axis_loops(*compiled).at(which->device);
-  const auto found = which->wall ? wall_damper(*compiled, one) : coupling_damper(base, *which);
+  const AxisLoop start = axis_loops(*compiled).at(which->device);
+  const auto found = which->wall ? wall_damper(*compiled, start) : coupling_damper(*base, *which);
   if (!found) return tl::unexpected(found.error());
-  const auto proof = proof_with(base, *which, found->damping);
+  const auto with = compiled_with(*base, *which, found->damping);
+  if (!with) return tl::unexpected(with.error());
+  const AxisLoop one = axis_loops(*with).at(which->device);
+  const auto proof = proof_with(one);
   if (!proof) return tl::unexpected(proof.error());
-  const std::string draft = options.output + ".new";
-  const std::string text = proof_text(*proof, which->key + fmt::format(": {:.4g}", found->damping));
-  auto gate = replace_file(draft, text).and_then([&] {
-    return gate_with(base, *which, found->damping, draft);
-  });
-  if (gate && !gate->proved_robust())
-    gate =
-        fail(ExitCode::no,
-             "what was found is not proved by the daemon's own check, so nothing was written:\n" +
-                 gate->explanation());
-  if (gate && std::rename(draft.c_str(), options.output.c_str()) != 0)
-    gate = fail(ExitCode::cannot_create, options.output + ": cannot be written");
-  if (!gate) {
-    std::remove(draft.c_str());
-    return tl::unexpected(gate.error());
-  }
-  return Written{*which, *found, std::move(*gate)};
+  const check::RobustAnswer answer =
+      check::robust(one.loop, one.box, *proof ? matrices_of(**proof) : std::vector<Matrix>{});
+  Designed designed{*which, *found, robust_words(answer) + ": " + answer.why, false};
+  if (!*proof) return designed;
+  if (auto written = write_proof(*base, designed, **proof, options.output); !written)
+    return tl::unexpected(written.error());
+  designed.written = true;
+  return designed;
 }
 
 std::string paper_line(const FoundDamper& found) {
@@ -199,42 +245,59 @@ std::string paper_line(const FoundDamper& found) {
       paper.answer.robust ? "robust" : "not robust");
 }
 
-Json json_of(const Written& written, const std::string& output) {
+Json json_of(const Designed& designed, const std::string& output) {
   Json json{{"ok", true},
-            {"output", output},
-            {"key", written.which.key},
-            {"damping_Ns_m", written.found.damping},
-            {"worst", written.found.worst},
-            {"robust", written.gate.robust.front().why}};
-  if (written.which.wall) json["largest_index"] = written.found.index;
-  if (written.found.paper && written.found.paper->why.empty())
-    json["paper"] = {{"damping_Ns_m", written.found.paper->damper_Ns_m},
-                     {"index", written.found.paper->answer.index},
-                     {"robust", written.found.paper->answer.robust}};
+            {"output", designed.written ? Json(output) : Json(nullptr)},
+            {"key", designed.which.key},
+            {"damping_Ns_m", designed.found.damping},
+            {"worst", designed.found.worst},
+            {"robust", designed.robust},
+            {"proved", designed.written}};
+  if (designed.which.wall) json["largest_index"] = designed.found.index;
+  if (designed.found.paper && designed.found.paper->why.empty())
+    json["paper"] = {{"damping_Ns_m", designed.found.paper->damper_Ns_m},
+                     {"index", designed.found.paper->answer.index},
+                     {"robust", designed.found.paper->answer.robust}};
   return json;
+}
+
+std::string text_of(const Designed& designed) {
+  std::string text = fmt::format("{}: {:.4g}\n", designed.which.key, designed.found.damping);
+  if (designed.which.wall)
+    text +=
+        fmt::format("largest J: {:.4g} m^2/s at {}\n", designed.found.index, designed.found.worst);
+  return text + paper_line(designed.found) + "robust: " + designed.robust + "\n";
 }
 
 }  // namespace
 
 ExitCode run_design_robust(const std::string& path, const DesignOptions& options, bool json) {
+  static_cast<void>(interrupts());  // from here on they end it with a whole file or none
+  if (options.order != 0 || options.aim != DesignAim::stiffest ||
+      options.structure != DesignStructure::decentralised)
+    return print_error({"--proof robust takes no --order, --aim or --structure", ExitCode::usage},
+                       json);
   const auto document = config::read_file(path);
   if (!document) return print_config_errors(document.error(), json);
-  const auto written = design(*document, options);
-  if (!written) return print_error(written.error(), json);
+  if (auto writable = check_output(options.output, {path}); !writable)
+    return print_error(writable.error(), json);
+  const auto designed = design(*document, options);
+  if (!designed) return print_error(designed.error(), json);
   if (json) {
-    std::puts(to_text(json_of(*written, options.output)).c_str());
-    return ExitCode::ok;
+    std::puts(to_text(json_of(*designed, options.output)).c_str());
+  } else if (designed->written) {
+    std::printf(
+        "%s%s written; put both into the config, and  stability: {require: robust, proof: %s}\n",
+        text_of(*designed).c_str(), options.output.c_str(),
+        named_from(path, options.output).c_str());
+  } else {
+    std::printf("%sno proof was found, so %s is not written%s\n", text_of(*designed).c_str(),
+                options.output.c_str(),
+                designed->which.wall
+                    ? "; for a wall it takes a hand with a spring: stability.hand.stiffness_N_m"
+                    : "");
   }
-  std::string text = fmt::format("{}: {:.4g}\n", written->which.key, written->found.damping);
-  if (written->which.wall)
-    text +=
-        fmt::format("largest J: {:.4g} m^2/s at {}\n", written->found.index, written->found.worst);
-  std::printf(
-      "%s%srobust: %s\n%s written; put both into the config, and  stability: {require: robust, "
-      "proof: %s}\n",
-      text.c_str(), paper_line(written->found).c_str(), written->gate.robust.front().why.c_str(),
-      options.output.c_str(), options.output.c_str());
-  return ExitCode::ok;
+  return designed->written ? ExitCode::ok : ExitCode::no;
 }
 
 }  // namespace hapticd::daemon

@@ -4,6 +4,7 @@
 
 #include "daemon/hapticctl_certify.h"
 #include "daemon/hapticctl_command_line.h"
+#include "daemon/within.h"
 
 namespace hapticd::daemon {
 namespace {
@@ -58,7 +59,7 @@ void add_stability(CommandLine& line) {
       ->add_option("--corner", line.design.corner_rad_s,
                    "of the low-pass that the error is weighed with")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e5))
+      ->check(within(1e-3, 1e5))
       ->type_name("RAD_S");
   design
       ->add_option("--order", line.design.order,
@@ -70,7 +71,7 @@ void add_stability(CommandLine& line) {
       ->add_option("--damping-share", line.design.damping_share,
                    "share of the devices' damping that the proof may use")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 0.9999))
+      ->check(within(0.01, 0.9999))
       ->type_name("S");
 }
 
@@ -128,22 +129,24 @@ void add_zwidth(CommandLine& line) {
   verb->add_option("--picture", options.picture, "draw it, too: .png or .svg")
       ->type_name("PICTURE");
   add_number(*verb, "--to", options.to_Ns_m, "greatest damping, N s/m (default: twice mass/period)")
-      ->check(CLI::Range(1e-6, 1e5));
+      ->check(within(1e-6, 1e5));
   verb->add_option("--points", options.points, "dampings, evenly from 0 on")
       ->capture_default_str()
       ->check(CLI::Range(2, 1000))
       ->type_name("N");
   add_number(*verb, "--push", options.push_N,
-             "how hard a simulated hand presses, N (default: a hundredth of what the axis can)");
-  add_number(*verb, "--force", options.force_N, "at most, N (default: as the guard allows)");
+             "how hard a simulated hand presses, N (default: by the stiffness)")
+      ->check(within(1e-9, 1e6));
+  add_number(*verb, "--force", options.force_N, "at most, N (default: as the guard allows)")
+      ->check(within(1e-6, 1e6));
   verb->add_option("--travel", options.travel_m, "motion beyond is unstable, m")
       ->capture_default_str()
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(within(1e-6, 1.0))
       ->type_name("X");
   verb->add_option("--tremor", options.tremor_m,
                    "by the clock: motion up to this is the operator's, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(within(0.0, 0.1))
       ->type_name("X");
   verb->add_flag("--i-hold-the-device", options.consent,
                  "of a real device: it may shake, an operator holds it");
@@ -171,9 +174,9 @@ void add_sweep(CommandLine& line) {
   verb->add_option("--picture", options.picture, "draw it, too: .png or .svg")
       ->type_name("PICTURE");
   add_number(*verb, "--from", options.from, "least value (default: by the config)")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->check(within(1e-9, 1e9));
   add_number(*verb, "--to", options.to, "greatest value (default: by the config)")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->check(within(1e-9, 1e9));
   verb->add_option("--points", options.points, "evenly spaced in powers of ten")
       ->capture_default_str()
       ->check(CLI::Range(2, 10'000))

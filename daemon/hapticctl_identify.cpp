@@ -2,12 +2,10 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <utility>
 
 #include "config/write_yaml.h"
@@ -16,6 +14,7 @@
 #include "daemon/hapticctl_identify_report.h"
 #include "daemon/hapticctl_identify_session.h"
 #include "daemon/interrupts.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 
 namespace hapticd::daemon {
@@ -39,21 +38,6 @@ class ProgressLines {
  private:
   double next_ = 0;
 };
-
-/// Before anything moves: can the file be written, and is it not the config itself?
-Result<void> check_output(const std::string& config, const std::string& output) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  if (fs::equivalent(config, output, ignored)) {
-    return fail(ExitCode::usage,
-                output +
-                    " is the config, which is never rewritten; write a file of its "
-                    "own and name it there: model: {file: ...}");
-  }
-  const fs::path directory = fs::absolute(output).parent_path();
-  if (fs::is_directory(directory, ignored) && ::access(directory.c_str(), W_OK) == 0) return {};
-  return fail(ExitCode::cannot_create, output + ": cannot be created");
-}
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -127,7 +111,7 @@ Result<Found> identify_axis(IdentifySetup& setup, const IdentifyOptions& options
 ExitCode run_identify(const std::string& config_path, const IdentifyOptions& options, bool json) {
   auto compiled = config::load(config_path);
   if (!compiled) return print_config_errors(compiled.error(), json);
-  if (auto output = check_output(config_path, options.output); !output)
+  if (auto output = check_output(options.output, {config_path}); !output)
     return print_error(output.error(), json);
   auto setup = identify_setup(*compiled, options);
   if (!setup) return print_error(setup.error(), json);
@@ -136,9 +120,9 @@ ExitCode run_identify(const std::string& config_path, const IdentifyOptions& opt
   if (json) {
     std::puts(to_text(found->json).c_str());
   } else {
-    const std::string next =
-        options.hand ? "its keys are those of sim: {hand: ...}"
-                     : "put this into the config:  model: {file: " + options.output + "}";
+    const std::string next = options.hand ? "its keys are those of sim: {hand: ...}"
+                                          : "put this into the config:  model: {file: " +
+                                                named_from(config_path, options.output) + "}";
     std::printf("%s%s written; %s\n", found->text.c_str(), options.output.c_str(), next.c_str());
   }
   return ExitCode::ok;

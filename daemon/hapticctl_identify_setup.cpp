@@ -118,8 +118,9 @@ class Setup {
     for (const auto* one : {&force, &speed, &travel, &to_Hz}) {
       if (!*one) return tl::unexpected(one->error());
     }
-    const auto from_Hz = bounded("--from", options_.from_Hz, std::min(kFrom_Hz, *to_Hz / 10),
-                                 {*to_Hz / 2, "Hz", kLowest_Hz});
+    const auto from_Hz =
+        bounded("--from", options_.from_Hz, std::clamp(*to_Hz / 10, kLowest_Hz, kFrom_Hz),
+                {*to_Hz / 2, "Hz", kLowest_Hz});
     if (!from_Hz) return tl::unexpected(from_Hz.error());
     excitation.force = *force;
     excitation.speed = *speed;

@@ -11,6 +11,7 @@
 #include "daemon/ctl_check.h"
 #include "daemon/ctl_why.h"
 #include "daemon/hapticctl_command_line.h"
+#include "daemon/within.h"
 
 namespace {
 
@@ -43,7 +44,7 @@ void add_file_verbs(CommandLine& line) {
   simulate->add_option("CONFIG", line.input, "the config")->required();
   simulate->add_option("--duration", line.simulate.duration_s, "seconds of virtual time")
       ->required()
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(daemon::within(0.0, 1e9))
       ->type_name("S");
   simulate->add_option("-o,--output", line.simulate.output, "the recording, replaced if it exists")
       ->required()
@@ -74,7 +75,7 @@ void add_doctor(CommandLine& line) {
                      "run the loop of this config with forces off; without: the machine alone");
   doctor->add_option("--seconds", line.doctor.seconds, "how long the loop is watched")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0))
+      ->check(daemon::within(0.1, 86'400.0))
       ->type_name("S");
   doctor->add_option("--priority", line.doctor.priority, "of the loop, where no config says")
       ->capture_default_str()

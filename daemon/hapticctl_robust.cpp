@@ -30,7 +30,11 @@ double tolerated(const AxisLoop& one) {
 
 Json paper_of_wall(const AxisLoop& one, const config::PaperModel& model) {
   const synthesis::WallGoal goal = paper_goal(one, model);
-  if (!synthesis::malformed(goal).empty()) return nullptr;
+  if (const std::string wrong = synthesis::malformed(goal); !wrong.empty())
+    return {{"answer", "not available"},
+            {"why", wrong},
+            {"nominally_stable", nullptr},
+            {"norm_dB", nullptr}};
   const double norm = synthesis::perturbation_norm(goal, one.damper);
   const bool stable = synthesis::nominally_stable(goal, one.damper);
   return {{"answer", stable && norm <= 1 ? "yes" : "no"},
@@ -48,21 +52,37 @@ std::string hand_text(const std::optional<config::HandRange>& hand) {
          range(hand->stiffness_N_m, "N/m");
 }
 
+std::vector<Matrix> found_for(const AxisLoop& one, const check::LoopBox& box) {
+  if (!check::excluded(one.loop, box).empty()) return {};
+  auto found = synthesis::find_common(one.loop, box);
+  if (found.P.empty()) found = synthesis::find_constant(one.loop, box);
+  return found.P;
+}
+
+/// What could be proved if the contact never opened: to be told, not to be gone by.
+std::string while_closed(const AxisLoop& one) {
+  check::LoopBox closed = one.box;
+  closed.contact = {1, 1};
+  const check::RobustAnswer answer = check::robust(one.loop, closed, found_for(one, closed));
+  return robust_words(answer) + ": " + answer.why;
+}
+
 Json entry_of(const config::Compiled& compiled, const AxisLoop& one, const std::vector<Matrix>& P) {
   if (!one.why.empty())
     return {{"device", one.device}, {"answer", "not available"}, {"why", one.why}};
-  const AxisAnswer answer = robust_answer(one, P);
+  const check::RobustAnswer answer = check::robust(one.loop, one.box, P);
   const config::Stability& stability = compiled.document.config.stability;
   Json entry{{"device", one.device},
-             {"answer", words_of(answer)},
-             {"proved", answer.proved()},
-             {"why", answer.robust.why},
-             {"cases", answer.robust.cases},
-             {"largest_eigenvalue", answer.robust.worst.radius},
-             {"worst", check::described(answer.robust.worst.at)},
+             {"answer", robust_words(answer)},
+             {"proved", is_proof(answer)},
+             {"why", answer.why},
+             {"cases", answer.cases},
+             {"largest_eigenvalue", answer.worst.radius},
+             {"worst", check::described(answer.worst.at)},
              {"hand", hand_text(stability.hand)},
              {"tolerated_share", tolerated(one)}};
   if (one.wall) entry["paper"] = paper_of_wall(one, stability.paper);
+  if (one.wall && answer.kind == check::Robust::sampled) entry["while_closed"] = while_closed(one);
   return entry;
 }
 
@@ -91,13 +111,7 @@ synthesis::WallGoal paper_goal(const AxisLoop& one, const config::PaperModel& mo
 
 std::vector<Matrix> find_proof(const AxisLoop& one) {
   if (check::robust(one.loop, one.box).kind != check::Robust::sampled) return {};
-  for (const check::LoopBox& box : boxes_to_prove(one)) {
-    if (!check::excluded(one.loop, box).empty()) continue;
-    auto found = synthesis::find_common(one.loop, box);
-    if (found.P.empty()) found = synthesis::find_constant(one.loop, box);
-    if (!found.P.empty()) return found.P;
-  }
-  return {};
+  return found_for(one, one.box);
 }
 
 std::string proof_text(const config::ProofFile& proof, const std::string& about) {
@@ -111,7 +125,8 @@ RobustReport robust_report(const config::Compiled& compiled) {
   RobustReport report{.json = Json::array()};
   for (const AxisLoop& one : axis_loops(compiled)) {
     std::vector<Matrix> P = proof_of(compiled, one.device);
-    if (one.why.empty() && (P.empty() || !robust_answer(one, P).proved())) P = find_proof(one);
+    if (one.why.empty() && (P.empty() || !is_proof(check::robust(one.loop, one.box, P))))
+      P = find_proof(one);
     report.json.push_back(entry_of(compiled, one, P));
     if (P.empty() || !one.why.empty()) continue;
     config::DeviceProof proof{.device = one.device};
@@ -129,6 +144,8 @@ std::string robust_text(const Json& robust) {
   for (const Json& one : robust) {
     text += fmt::format("  {}: {}: {}\n", one["device"].get<std::string>(),
                         one["answer"].get<std::string>(), one["why"].get<std::string>());
+    if (one.contains("while_closed"))
+      text += "    if the contact never opened: " + one["while_closed"].get<std::string>() + "\n";
     if (one.contains("tolerated_share"))
       text += fmt::format(
           "    as given it stays stable while mass and damping are off, by one factor, by less "
@@ -141,7 +158,8 @@ std::string robust_text(const Json& robust) {
                       paper["answer"].get<std::string>());
       if (paper["norm_dB"].is_number())
         text += fmt::format(", |L| = {:.4g} dB", paper["norm_dB"].get<double>());
-      text += paper["nominally_stable"].get<bool>() ? "\n" : ", nominally unstable\n";
+      if (paper.contains("why")) text += ": " + paper["why"].get<std::string>();
+      text += paper["nominally_stable"] == false ? ", nominally unstable\n" : "\n";
     }
   }
   return text;

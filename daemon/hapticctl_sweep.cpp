@@ -15,6 +15,7 @@
 #include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_robust.h"
 #include "daemon/interrupts.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 
 namespace hapticd::daemon {
@@ -26,12 +27,12 @@ struct SweepRange {
 
 /// Where nothing is said.
 SweepRange usual(const AxisLoop& one, SweepOver over) {
-  const double period_s = one.loop.period_s;
+  const double period_s = one.loop.period_s, mass = one.mass / one.scale;
   switch (over) {
     case SweepOver::damping:
-      return {0.05 * one.mass / period_s, 3 * one.mass / period_s};
+      return {0.05 * mass / period_s, 3 * mass / period_s};
     case SweepOver::stiffness:
-      return {1, 4 * one.mass / (period_s * period_s)};
+      return {1, 4 * mass / (period_s * period_s)};
     case SweepOver::frequency:
       break;
   }
@@ -71,22 +72,25 @@ double energy_dB(double index) {
 class WallCurves {
  public:
   WallCurves(const AxisLoop& one, const synthesis::WallGoal& goal, SweepOver over)
-      : one_(one), goal_(goal), over_(over), cases_(check::cases_of(one.box, 3)) {
+      : one_(one), goal_(goal), over_(over) {
+    check::LoopBox closed = one.box;
+    closed.contact = {1, 1};
+    cases_ = check::cases_of(closed, 3);
     given_ = {
         .mass_kg = one.mass, .damping_Ns_m = one.damping, .latency_s = one.box.latency_s.high};
   }
 
   static std::string header(SweepOver over) {
     return std::string(over == SweepOver::damping ? "damping[N s/m]" : "stiffness[N/m]") +
-           ",J paper[dB re 1 m^2/s],J sampled[dB re 1 m^2/s],J worst case[dB re 1 m^2/s],|L| "
+           ",J paper[dB],J sampled[dB],J worst case[dB],|L| "
            "paper[dB],largest "
            "eigenvalue[1],of all cases[1]";
   }
 
   std::vector<double> at(double value) const {
     synthesis::WallGoal goal = goal_;
-    const double damper = over_ == SweepOver::damping ? value : one_.damper;
-    if (over_ == SweepOver::stiffness) goal.stiffness_N_m = value;
+    const double damper = over_ == SweepOver::damping ? one_.scale * value : one_.damper;
+    if (over_ == SweepOver::stiffness) goal.stiffness_N_m = one_.scale * value;
     const synthesis::PaperAnswer paper = synthesis::paper_answer(goal, damper);
     check::SampledLoop loop = one_.loop;
     loop.force = check::direct_wall(goal.stiffness_N_m, damper, one_.velocity);
@@ -145,6 +149,10 @@ Result<Table> sweep(const AxisLoop& one, const synthesis::WallGoal& goal,
 }  // namespace
 
 ExitCode run_sweep(const std::string& path, const SweepOptions& options, bool json) {
+  if (auto writable = check_output(options.output, {path}); !writable)
+    return print_error(writable.error(), json);
+  if (auto drawable = check_picture(options.picture, {path, options.output}); !drawable)
+    return print_error(drawable.error(), json);
   const auto compiled = config::load(path);
   if (!compiled) return print_config_errors(compiled.error(), json);
   const std::vector<AxisLoop> loops = axis_loops(*compiled);

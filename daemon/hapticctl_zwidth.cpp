@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "control/design/check/models.h"
+#include "config/effective_guard.h"
 #include "daemon/ctl_check.h"
 #include "daemon/ctl_plot.h"
 #include "daemon/ctl_verbs.h"
@@ -18,6 +20,7 @@
 #include "daemon/hapticctl_zwidth_trial.h"
 #include "daemon/interrupts.h"
 #include "daemon/lock_file.h"
+#include "daemon/output_check.h"
 #include "daemon/output_file.h"
 #include "daemon/realtime.h"
 #include "daemon/wall_of.h"
@@ -25,17 +28,23 @@
 namespace hapticd::daemon {
 namespace {
 
-constexpr double kDeepest_m = 0.01;  // of the softest wall under the push
-constexpr double kFloorCounts = 32;  // of the encoder: motion that is none
-constexpr double kKnock = 0.5;       // of the push, for 5 ms
+constexpr double kDeflection_m = 5e-4;  // under the push, where force and encoder allow it
+constexpr double kLeastPush = 0.01;     // of what the axis can
+constexpr double kDeepest_m = 0.01;     // of the softest wall
+constexpr double kGreatestPush = 0.3;   // of what the axis can
+constexpr double kResolved = 16;        // counts of the encoder that a deflection has at least
+constexpr double kRattles = 4;          // pushes by this against the damper at one count a tick
+constexpr double kFloor = 0.05;         // of the deflection: motion that is none
+constexpr double kFloorCounts = 4;      // likewise, at least
+constexpr double kKnock = 0.5;          // of the push, for 5 ms
 constexpr double kKnock_s = 5e-3;
 constexpr double kSettle_s = 0.15;
-constexpr double kPause_s = 1;  // between two walls on a real device
 constexpr int kPriority = 80;
 
 struct Point {
   double damping = 0;
-  double measured = 0;  ///< N/m; 0: none
+  double measured = 0;  ///< N/m; 0: none; infinite: beyond what can be told
+  std::string why;      ///< what ended it
   StiffestWalls theory;
 };
 
@@ -48,59 +57,105 @@ class Zwidth {
     by_the_clock_ = options.real_time || device.driver != config::Driver::sim;
     document_.config.stability.require = config::Require::none;
     document_.config.stability.proof.reset();
-    for (config::Device& each : document_.config.devices)
-      if (options.force_N) each.guard.max_force_N = *options.force_N;
+    for (config::Device& each : document_.config.devices) {
+      const double allowed = config::effective_guard(document_.config.guard, each).max_force_N;
+      each.guard.max_force_N = std::min(allowed, options.force_N.value_or(allowed));
+    }
   }
 
   Result<void> prepare(const config::Compiled& compiled) {
-    const control::AxisPlan& axis = compiled.program->plan().axes.front();
-    push_N_ = options_.push_N.value_or(0.01 * axis.max_effort);
-    counts_m_ = std::fabs(axis.unit_per_raw);
-    if (!(push_N_ > 0)) return fail(ExitCode::usage, "--push: expected more than 0 N");
-    press(compiled);
+    const control::Plan& plan = compiled.program->plan();
+    const control::PlaneContact& wall = plan.planes.front();
+    const control::CartesianAxis& axis = plan.cartesian_axes.front();
+    direction_ = axis.scale * wall.normal[0] > 0 ? -1 : 1;
+    surface_m_ = (wall.offset / wall.normal[0] - axis.origin) / axis.scale;
+    greatest_N_ = std::min(plan.axes.front().max_effort,
+                           options_.force_N.value_or(std::numeric_limits<double>::infinity()));
+    counts_m_ = std::fabs(plan.axes.front().unit_per_raw);
+    if (options_.push_N && !((1 + kKnock) * *options_.push_N <= greatest_N_)) {
+      return fail(ExitCode::usage,
+                  fmt::format("--push: with the knock it is {:.4g} N, and the axis can {:.4g} N",
+                              (1 + kKnock) * *options_.push_N, greatest_N_));
+    }
     if (!by_the_clock_) return {};
     realtime_.emplace(report_);
     enter_realtime(kPriority, {}, report_);
     return {};
   }
 
-  /// The softest wall that is tried.
-  double softest() const { return std::max(1.0, push_N_ / kDeepest_m); }
-
-  Result<double> measure(double damping) {
-    return stiffest(softest(), [&](double stiffness) { return holds(stiffness, damping); });
+  /// Greatest stiffness for a damping, and what ended it.
+  Result<Point> measure(double damping) {
+    Point point{.damping = damping, .why = {}, .theory = {}};
+    const auto measured = stiffest(
+        softest(damping), [&](double stiffness) { return holds(stiffness, damping, point); });
+    if (!measured) return tl::unexpected(measured.error());
+    point.measured = unresolved_ ? std::numeric_limits<double>::infinity() : *measured;
+    return point;
   }
 
  private:
-  /// The simulated hand presses along the wall's normal, and knocks once.
-  void press(const config::Compiled& compiled) {
-    config::Device& device = document_.config.devices.front();
-    if (!device.sim) return;
-    const control::PlaneContact& plane = compiled.program->plan().planes.front();
-    const double along =
-        check::constant_jacobian(compiled.program->plan(), {0})(0, 0) * plane.normal[0];
-    const double push = along > 0 ? -push_N_ : push_N_;
-    device.sim->hand.script = {{.at_s = 0, .force_N = push},
-                               {.at_s = kSettle_s, .force_N = (1 + kKnock) * push},
-                               {.at_s = kSettle_s + kKnock_s, .force_N = push}};
+  /// Of the walls that are tried: it settles within the watch, and gives way by little.
+  double softest(double damping) const {
+    return std::max({1.0, 4 * damping, least_push(damping) / (one_.scale * kDeepest_m)});
   }
 
-  Result<bool> holds(double stiffness, double damping) {
+  /// N, on the axis. Presses harder than the damper rattles at the encoder's steps.
+  double least_push(double damping) const {
+    const double rattle = one_.scale * damping * counts_m_ / one_.loop.period_s;
+    return options_.push_N.value_or(std::max(kLeastPush * greatest_N_, kRattles * rattle));
+  }
+  double push(double stiffness, double damping) const {
+    if (options_.push_N) return *options_.push_N;
+    return std::max(std::min(one_.scale * stiffness * kDeflection_m, kGreatestPush * greatest_N_),
+                    least_push(damping));
+  }
+  double deflection_m(double stiffness, double damping) const {
+    return push(stiffness, damping) / (one_.scale * stiffness);
+  }
+
+  /// From the surface on a hand without mass presses along the wall's normal, and knocks once.
+  void press(double force_N) {
+    config::Device& device = document_.config.devices.front();
+    if (!device.sim) return;
+    device.sim->axes.front().position_m = surface_m_;
+    device.sim->hand = {};
+    device.sim->hand.script = {{.at_s = 0, .force_N = force_N},
+                               {.at_s = kSettle_s, .force_N = (1 + kKnock) * force_N},
+                               {.at_s = kSettle_s + kKnock_s, .force_N = force_N}};
+  }
+
+  Result<bool> holds(double stiffness, double damping, Point& point) {
+    unresolved_ = !by_the_clock_ && (push(stiffness, damping) > kGreatestPush * greatest_N_ ||
+                                     deflection_m(stiffness, damping) < kResolved * counts_m_);
+    if (unresolved_) {
+      point.why = "beyond what force and encoder of the device can tell";
+      return false;
+    }
+    press(direction_ * push(stiffness, damping));
     auto compiled = with_wall(document_, stiffness, damping);
     if (!compiled) return tl::unexpected(compiled.error());
     if (auto ready = connect(*compiled); !ready) return tl::unexpected(ready.error());
     if (by_the_clock_)
       std::fprintf(stderr, "zwidth: press against a wall of %.4g N/m, %.4g N s/m\n", stiffness,
                    damping);
-    const auto trial =
-        run_trial(*compiled->program, rig_,
-                  {.axis = 0,
-                   .settle_s = kSettle_s,
-                   .floor_m = by_the_clock_ ? options_.tremor_m : kFloorCounts * counts_m_,
-                   .travel_m = options_.travel_m},
-                  interrupts());
+    const double floor_m =
+        std::max(kFloorCounts * counts_m_, kFloor * deflection_m(stiffness, damping));
+    const auto trial = run_trial(*compiled->program, rig_,
+                                 {.settle_s = kSettle_s,
+                                  .floor_m = by_the_clock_ ? options_.tremor_m : floor_m,
+                                  .travel_m = options_.travel_m},
+                                 interrupts());
     disconnect();
     if (!trial) return tl::unexpected(trial.error());
+    if (!trial->touched) {
+      return fail(
+          ExitCode::no,
+          fmt::format(
+              "the wall of {:.4g} N/m was never felt{}: the device has to be beside the wall, and "
+              "nothing may hold it back",
+              stiffness, trial->why.empty() ? "" : ", " + trial->why));
+    }
+    if (!trial->stable) point.why = trial->why;
     return trial->stable;
   }
 
@@ -132,8 +187,8 @@ class Zwidth {
   config::Document document_;
   const AxisLoop& one_;
   const ZwidthOptions& options_;
-  bool by_the_clock_ = false;
-  double push_N_ = 0, counts_m_ = 0;
+  bool by_the_clock_ = false, unresolved_ = false;
+  double direction_ = 1, surface_m_ = 0, greatest_N_ = 0, counts_m_ = 0;
   ZwidthRig rig_;
   std::vector<LockFile> locks_;
   RealtimeReport report_;
@@ -158,6 +213,12 @@ Result<AxisLoop> only_wall(const config::Compiled& compiled, const ZwidthOptions
   return loops[0];
 }
 
+std::array<double, 6> columns(const Point& p) {
+  return {p.measured,     p.theory.exact,   p.theory.robust,
+          p.theory.paper, p.theory.passive, p.theory.colgate};
+}
+
+/// What is beyond all that is tried is a gap.
 std::string csv_of(const std::vector<Point>& points, const std::string& config) {
   std::string text =
       "# Z-width: greatest stiffness of the wall for each damping of it; " + config +
@@ -165,24 +226,23 @@ std::string csv_of(const std::vector<Point>& points, const std::string& config) 
       "s/m],measured[N/m],exact[N/m],robust[N/m],paper[N/m],passive[N/m],colgate[N/m]\n";
   for (const Point& p : points) {
     text += fmt::format("{:.6g}", p.damping);
-    for (const double stiffness : {p.measured, p.theory.exact, p.theory.robust, p.theory.paper,
-                                   p.theory.passive, p.theory.colgate})
-      text += fmt::format(",{:.6g}", stiffness);
+    for (const double stiffness : columns(p))
+      text += std::isfinite(stiffness) ? fmt::format(",{:.6g}", stiffness) : ",";
     text += "\n";
   }
   return text;
 }
 
 Json json_of(const std::vector<Point>& points, const std::string& output) {
+  constexpr std::array kNames{"measured_N_m", "exact_N_m",   "robust_N_m",
+                              "paper_N_m",    "passive_N_m", "colgate_N_m"};
   Json rows = Json::array();
   for (const Point& p : points) {
-    rows.push_back({{"damping_Ns_m", p.damping},
-                    {"measured_N_m", p.measured},
-                    {"exact_N_m", p.theory.exact},
-                    {"robust_N_m", p.theory.robust},
-                    {"paper_N_m", p.theory.paper},
-                    {"passive_N_m", p.theory.passive},
-                    {"colgate_N_m", p.theory.colgate}});
+    Json row{{"damping_Ns_m", p.damping}, {"why", p.why}};
+    const auto values = columns(p);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      row[kNames[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
+    rows.push_back(std::move(row));
   }
   return {{"ok", true}, {"output", output}, {"points", std::move(rows)}};
 }
@@ -190,10 +250,13 @@ Json json_of(const std::vector<Point>& points, const std::string& output) {
 std::string text_of(const std::vector<Point>& points) {
   std::string text = fmt::format("{:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "B/(N s/m)",
                                  "measured", "exact", "robust", "paper", "passive", "Colgate");
-  for (const Point& p : points)
-    text += fmt::format("{:10.4g} {:10.4g} {:10.4g} {:10.4g} {:10.4g} {:10.4g} {:10.4g}\n",
-                        p.damping, p.measured, p.theory.exact, p.theory.robust, p.theory.paper,
-                        p.theory.passive, p.theory.colgate);
+  for (const Point& p : points) {
+    text += fmt::format("{:10.4g}", p.damping);
+    for (const double stiffness : columns(p))
+      text += std::isfinite(stiffness) ? fmt::format(" {:10.4g}", stiffness)
+                                       : fmt::format(" {:>10}", "beyond");
+    text += p.measured > 0 && std::isfinite(p.measured) ? "\n" : "  " + p.why + "\n";
+  }
   return text + "greatest stiffness in N/m; 0: none\n";
 }
 
@@ -201,17 +264,18 @@ Result<std::vector<Point>> measure(const config::Compiled& compiled, const AxisL
                                    const ZwidthOptions& options) {
   Zwidth zwidth(compiled.document, one, options);
   if (auto ready = zwidth.prepare(compiled); !ready) return tl::unexpected(ready.error());
-  const double to = options.to_Ns_m.value_or(2 * one.mass / one.loop.period_s);
+  const double to = options.to_Ns_m.value_or(2 * one.mass / one.scale / one.loop.period_s);
   std::vector<Point> points;
   for (int i = 0; i < options.points; ++i) {
     const double damping = to * i / (options.points - 1);
-    const auto measured = zwidth.measure(damping);
-    if (!measured) return tl::unexpected(measured.error());
+    auto point = zwidth.measure(damping);
+    if (!point) return tl::unexpected(point.error());
     const auto theory = stiffest_walls(compiled.document, damping);
     if (!theory) return tl::unexpected(theory.error());
-    points.push_back({damping, *measured, *theory});
-    std::fprintf(stderr, "zwidth: %3.0f %%, B = %.4g N s/m: K up to %.4g N/m\n",
-                 100.0 * (i + 1) / options.points, damping, *measured);
+    point->theory = *theory;
+    std::fprintf(stderr, "zwidth: %3.0f %%, B = %.4g N s/m: K up to %.4g N/m: %s\n",
+                 100.0 * (i + 1) / options.points, damping, point->measured, point->why.c_str());
+    points.push_back(std::move(*point));
   }
   return points;
 }
@@ -219,7 +283,14 @@ Result<std::vector<Point>> measure(const config::Compiled& compiled, const AxisL
 }  // namespace
 
 ExitCode run_zwidth(const std::string& path, const ZwidthOptions& options, bool json) {
-  auto compiled = config::load(path);
+  if (auto writable = check_output(options.output, {path}); !writable)
+    return print_error(writable.error(), json);
+  if (auto drawable = check_picture(options.picture, {path, options.output}); !drawable)
+    return print_error(drawable.error(), json);
+  auto document = config::read_file(path);
+  if (!document) return print_config_errors(document.error(), json);
+  document->config.stability.proof.reset();  // it is about another wall
+  auto compiled = config::compile(std::move(*document));
   if (!compiled) return print_config_errors(compiled.error(), json);
   const auto one = only_wall(*compiled, options);
   if (!one) return print_error(one.error(), json);
@@ -231,8 +302,7 @@ ExitCode run_zwidth(const std::string& path, const ZwidthOptions& options, bool 
       json ? (to_text(json_of(*points, options.output)) + "\n").c_str() : text_of(*points).c_str(),
       stdout);
   if (options.picture.empty()) return ExitCode::ok;
-  PlotOptions plot{.output = options.picture};
-  return run_plot(options.output, plot, false);
+  return run_plot(options.output, {.output = options.picture}, false);
 }
 
 }  // namespace hapticd::daemon

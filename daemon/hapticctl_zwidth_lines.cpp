@@ -17,7 +17,7 @@ constexpr double kLeast_N_m = 1;
 double stiffest_of(const AxisLoop& one, double damping, const std::vector<check::LoopCase>& cases) {
   const auto stable = [&](double stiffness) -> Result<bool> {
     check::SampledLoop loop = one.loop;
-    loop.force = check::direct_wall(stiffness, damping, one.velocity);
+    loop.force = check::direct_wall(one.scale * stiffness, one.scale * damping, one.velocity);
     return check::worst_of(loop, cases).radius < check::kStableBelow;
   };
   return stiffest(kLeast_N_m, stable).value_or(0);
@@ -25,10 +25,11 @@ double stiffest_of(const AxisLoop& one, double damping, const std::vector<check:
 
 double stiffest_of_paper(AxisLoop one, const config::PaperModel& model, double damping) {
   const auto robust = [&](double stiffness) -> Result<bool> {
-    one.stiffness = stiffness;
+    one.stiffness = one.scale * stiffness;
     const synthesis::WallGoal goal = paper_goal(one, model);
-    return synthesis::malformed(goal).empty() && synthesis::nominally_stable(goal, damping) &&
-           synthesis::perturbation_norm(goal, damping) <= 1;
+    const double damper = one.scale * damping;
+    return synthesis::nominally_stable(goal, damper) &&
+           synthesis::perturbation_norm(goal, damper) <= 1;
   };
   return stiffest(kLeast_N_m, robust).value_or(0);
 }
@@ -65,7 +66,8 @@ Result<StiffestWalls> stiffest_walls(const config::Document& document, double da
   auto passive = stiffest(kLeast_N_m, proved);
   if (!passive) return tl::unexpected(passive.error());
   walls.passive = *passive;
-  walls.colgate = std::max(0.0, 2 * (one.box.damping_Ns_m.low - damping_Ns_m) / one.loop.period_s);
+  walls.colgate =
+      std::max(0.0, 2 * (one.box.damping_Ns_m.low / one.scale - damping_Ns_m) / one.loop.period_s);
   return walls;
 }
 

@@ -8,7 +8,7 @@
 
 namespace hapticd::daemon {
 
-/// N/m; 0: none.
+/// N/m of the wall as a config has it; 0: none, infinite: beyond kGreatest_N_m.
 struct StiffestWalls {
   double exact = 0;    ///< the device as given, latency_s, alone: eigenvalues of the sampled loop
   double robust = 0;   ///< every sampled case of the box, contact closed
@@ -17,6 +17,9 @@ struct StiffestWalls {
   double colgate = 0;  ///< 2 (b - B)/T, b the least damping of the device
 };
 
+/// Stiffer walls no config may have.
+inline constexpr double kGreatest_N_m = 1e7;
+
 /// The config of a document with its only wall changed. Errors: bad_data.
 Result<config::Compiled> with_wall(config::Document document, double stiffness_N_m,
                                    double damping_Ns_m);
@@ -24,19 +27,19 @@ Result<config::Compiled> with_wall(config::Document document, double stiffness_N
 Result<StiffestWalls> stiffest_walls(const config::Document& document, double damping_Ns_m);
 
 /// Greatest K for which `holds`, from `low` upwards: doubled until it does not, then bisected to a hundredth. What
-/// lies between two tests is not seen. 0: not even `low`.
+/// lies between two tests is not seen. 0: not even `low`; infinite: even kGreatest_N_m.
 template <class Holds>
 Result<double> stiffest(double low, Holds holds) {
-  constexpr double kGreatest = 1e7;
   constexpr double kRatio = 1.01;
   double inside = 0, outside = low;
-  for (; outside < kGreatest; outside *= 2) {
+  for (; outside < kGreatest_N_m; outside *= 2) {
     Result<bool> held = holds(outside);
     if (!held) return tl::unexpected(held.error());
     if (!*held) break;
     inside = outside;
   }
-  while (inside > 0 && outside < kGreatest && outside > kRatio * inside) {
+  if (outside >= kGreatest_N_m) return INFINITY;
+  while (inside > 0 && outside > kRatio * inside) {
     const double middle = std::sqrt(inside * outside);
     Result<bool> held = holds(middle);
     if (!held) return tl::unexpected(held.error());

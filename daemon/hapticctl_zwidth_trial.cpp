@@ -14,14 +14,28 @@ constexpr double kLongestStart_s = 30;  // power stage, homing, ramp
 constexpr double kDecayed = 0.98;
 constexpr int kStopCycles = 5;
 
-/// Peak to peak.
-struct Extent {
+/// Motion over a window: peak to peak, how often it turned round, whether the wall let go.
+struct Motion {
   double low = INFINITY, high = -INFINITY;
-  void add(double x) noexcept {
+  int turns = 0;
+  bool opened = false;
+
+  void add(double x, bool felt) noexcept {
+    if (low <= high) turned(x - last_);
+    last_ = x;
     low = std::min(low, x);
     high = std::max(high, x);
+    opened = opened || !felt;
   }
   double size() const noexcept { return std::max(0.0, high - low); }
+
+ private:
+  void turned(double step) noexcept {
+    if (step == 0) return;
+    if (direction_ * step < 0) ++turns;
+    direction_ = step;
+  }
+  double last_ = 0, direction_ = 0;
 };
 
 class Run {
@@ -59,25 +73,23 @@ class Run {
     Trial trial;
     for (double t = 0; t < options_.settle_s && !faulted(); t += period_s_) tick();
     const double began = position();
-    Extent middle, last;
+    Motion middle, last;
     for (double t = 0; t < options_.watch_s && !faulted() && !interrupt.load(); t += period_s_) {
       tick();
-      if (t >= options_.watch_s / 2 - kWindow_s && t < options_.watch_s / 2) middle.add(position());
-      if (t >= options_.watch_s - kWindow_s) last.add(position());
+      if (t >= options_.watch_s / 2 - kWindow_s && t < options_.watch_s / 2)
+        middle.add(position(), felt());
+      if (t >= options_.watch_s - kWindow_s) last.add(position(), felt());
       if (std::fabs(position() - began) > options_.travel_m) {
-        trial.why = "it moved further than the bound";
+        trial.why = "it moved further than --travel";
+        trial.touched = touched_;
         return trial;
       }
     }
     trial.middle_m = middle.size();
     trial.last_m = last.size();
-    if (faulted()) {
-      trial.why = "it ended in a fault";
-    } else if (trial.last_m > options_.floor_m && trial.last_m > kDecayed * trial.middle_m) {
-      trial.why = "its motion does not decay";
-    } else {
-      trial.stable = true;
-    }
+    trial.why = faulted() ? "it ended in a fault" : why_not(middle, last);
+    trial.stable = trial.why.empty();
+    trial.touched = touched_;
     return trial;
   }
 
@@ -95,7 +107,15 @@ class Run {
     const CycleInput input{
         .time = next.time, .missed_ticks = next.missed, .enable = true, .unproven = true};
     cycle_.run(program_, input, now_, nullptr);
+    touched_ = touched_ || felt();
   }
+  std::string why_not(const Motion& middle, const Motion& last) const {
+    if (last.opened) return "the contact does not stay closed";
+    const bool swings = last.turns > 2 && last.size() > options_.floor_m;
+    return swings && last.size() > kDecayed * middle.size() ? "its motion does not decay" : "";
+  }
+
+  bool felt() const noexcept { return program_.state().force[options_.coordinate] != 0; }
   bool faulted() const noexcept { return cycle_.output().mode == control::Mode::fault; }
   double position() const noexcept { return program_.state().q[options_.axis]; }
 
@@ -104,6 +124,7 @@ class Run {
   Now now_;
   TrialOptions options_;
   double period_s_;
+  bool touched_ = false;  // ever, the ramp included
   Cycle cycle_;
 };
 

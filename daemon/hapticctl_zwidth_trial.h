@@ -21,21 +21,24 @@ struct ZwidthRig {
 };
 
 struct TrialOptions {
-  std::size_t axis = 0;    ///< whose position is watched
-  double settle_s = 0.15;  ///< from full force until the wall is knocked, in simulation
-  double watch_s = 1.5;    ///< from then on
-  double floor_m = 0;      ///< motion that is none: peak to peak
-  double travel_m = 0;     ///< further from where the watch begins: unstable at once
+  std::size_t axis = 0;        ///< whose position is watched
+  std::size_t coordinate = 0;  ///< whose force tells the contact
+  double settle_s = 0.15;      ///< from full force until the wall is knocked, in simulation
+  double watch_s = 1.5;        ///< from then on
+  double floor_m = 0;          ///< motion that is none: peak to peak
+  double travel_m = 0;         ///< further from where the watch begins: unstable at once
 };
 
-/// Motion over a quarter of a second in the middle and at the end of the watch, peak to peak.
+/// What was seen over a quarter of a second in the middle and at the end of the watch.
 struct Trial {
   bool stable = false;
-  double middle_m = 0, last_m = 0;
-  std::string why;  ///< of what is not stable
+  bool touched = false;             ///< the wall was felt at all
+  double middle_m = 0, last_m = 0;  ///< motion, peak to peak
+  std::string why;                  ///< of what is not stable
 };
 
-/// Stable: the motion is below the floor at the end, or it has become less since the middle. Ends with zero force, whatever happens.
+/// Not stable: a fault, motion beyond the bound, the contact opens at the end of the watch, or motion that goes to and
+/// fro is above the floor then and has not become less since the middle. Ends with zero force, whatever happens.
 /// Errors: unavailable (no power stage), try_again (interrupted).
 Result<Trial> run_trial(build::Program& program, ZwidthRig& rig, const TrialOptions& options,
                         const std::atomic<bool>& interrupt);

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "daemon/within.h"
+
 namespace hapticd::daemon {
 
 std::variant<DaemonOptions, ExitCode> parse_daemon_options(int argc, const char* const* argv) {
@@ -11,7 +13,7 @@ std::variant<DaemonOptions, ExitCode> parse_daemon_options(int argc, const char*
   app.set_version_flag("--version", "hapticd " HAPTICD_VERSION);
   app.add_option("--config", options.config, "the config to run")->required()->type_name("FILE");
   app.add_option("--duration", options.duration_s, "end after this many seconds, with a summary")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(within(0.0, 1e9))
       ->type_name("S");
   app.add_flag("--require-realtime", options.require_realtime,
                "exit 77 before any device is armed if a real-time right is missing");

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -99,7 +100,16 @@ Result<void> OutputFile::give_up(int reason) {
   return fail(ExitCode::cannot_create, path_ + ": cannot be written: " + errno_text(reason));
 }
 
-Result<void> replace_file(const std::string& path, std::string_view text) {
+Result<void> replace_file(const std::string& named, std::string_view text) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::file_status status = fs::status(named, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return fail(ExitCode::cannot_create, named + ": is not a regular file, and is left as it is");
+  // A link stays one: what it leads to is replaced.
+  const std::string path = fs::is_symlink(named, ignored) && fs::exists(status)
+                               ? fs::canonical(named, ignored).string()
+                               : named;
   const std::string draft = path + ".new";
   auto written =
       OutputFile::create(draft, IfExists::replace).and_then([&](OutputFile file) -> Result<void> {

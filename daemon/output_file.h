@@ -45,7 +45,7 @@ class OutputFile {
 };
 
 /// Writes beside `path` and renames: whoever looks finds the old file or the new one, never half of
-/// it. Errors as of OutputFile; nothing is left behind.
+/// it. Follows a link; a device, a pipe or a directory is refused. Errors as of OutputFile; nothing is left behind.
 Result<void> replace_file(const std::string& path, std::string_view text);
 
 /// "No space left on device" and the like.

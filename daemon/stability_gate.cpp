@@ -34,8 +34,7 @@ std::string Gate::explanation() const {
     i = next;
   }
   for (std::size_t i = 0; i < robust.size(); ++i)
-    text += fmt::format("\n  {}: {}: {}", names[i],
-                        robust[i].proved ? "robust, proved" : "robust: not proved", robust[i].why);
+    text += fmt::format("\n  {}: robust: {}", names[i], robust[i].why);
   if (!certificate_problem.empty()) text += "\n  " + certificate_problem;
   return text;
 }
@@ -87,11 +86,14 @@ namespace {
 
 /// Why an axis is proved or not.
 Gate::Robust robust_of(const config::Compiled& compiled, const AxisLoop& one) {
-  if (!one.why.empty()) return {false, one.why};
+  if (!one.why.empty()) return {false, "not proved: " + one.why};
   const std::vector<check::Matrix> P = proof_of(compiled, one.device);
-  if (P.empty()) return {false, "stability.proof has nothing for this device"};
-  const AxisAnswer answer = robust_answer(one, P);
-  return {answer.proved(), words_of(answer) + ": " + answer.robust.why};
+  if (P.empty()) return {false, "not proved: stability.proof has nothing for this device"};
+  if (const std::string unfit = check::unfit(one.loop, one.box, P); !unfit.empty())
+    return {false, "not proved: " + unfit};
+  const check::RobustAnswer answer = check::robust(one.loop, one.box, P);
+  return {is_proof(answer),
+          (is_proof(answer) ? "" : "not proved: ") + robust_words(answer) + ": " + answer.why};
 }
 
 std::vector<Gate::Robust> robust_of(const config::Compiled& compiled) {

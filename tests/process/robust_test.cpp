@@ -32,7 +32,13 @@ class RobustCtl : public DaemonTest {
     std::ofstream(file) << text;
     return file;
   }
-  std::string demanded() const { return "require: robust, proof: " + proof_; }
+  /// Held firmly enough that the open loop comes back, too.
+  static constexpr const char* kHand =
+      "hand: {mass_kg: [0.05, 0.1], stiffness_N_m: [500, 800], damping_Ns_m: [10, 20]}";
+  std::string demanded() const {
+    return std::string("require: robust, ") + kHand + ", proof: " + proof_;
+  }
+  std::string held() const { return std::string("require: none, ") + kHand; }
   /// Exit of check, which says whether forces may come on; the verdict.
   int check(const std::string& config) {
     const int code = ctl({"check", config, "--json"});
@@ -44,12 +50,21 @@ class RobustCtl : public DaemonTest {
   Json gate_;
 };
 
-TEST_F(RobustCtl, DesignFindsThePapersMinMaxDamperAndProvesIt) {
-  ASSERT_EQ(ctl({"design", wall("1"), "--proof", "robust", "-o", proof_, "--json"}), 0) << ctl_err_;
+TEST_F(RobustCtl, DesignFindsTheMinMaxDamperOfAFreeDeviceAndClaimsNoProof) {
+  // Nobody holds it: open, it drifts, and no Lyapunov function knows that it comes back.
+  EXPECT_EQ(ctl({"design", wall("1"), "--proof", "robust", "-o", proof_, "--json"}), 1) << ctl_err_;
   const Json found = Json::parse(ctl_out_);
   // reference/paper2.json: exact min-max over +-50 % of the mass, with the paper's damping as given.
   EXPECT_NEAR(found["damping_Ns_m"].get<double>(), 8.207, 0.02);
   EXPECT_NEAR(found["paper"]["damping_Ns_m"].get<double>(), 15.2, 0.1);
+  EXPECT_FALSE(found["proved"]);
+  EXPECT_FALSE(std::filesystem::exists(proof_));
+}
+
+TEST_F(RobustCtl, DesignProvesTheDamperForHandsThatHoldTheDevice) {
+  ASSERT_EQ(ctl({"design", wall("1", held()), "--proof", "robust", "-o", proof_, "--json"}), 0)
+      << ctl_err_;
+  const Json found = Json::parse(ctl_out_);
   std::ostringstream damping;
   damping << found["damping_Ns_m"].get<double>();
   EXPECT_EQ(check(wall(damping.str(), demanded())), 0);
@@ -59,14 +74,13 @@ TEST_F(RobustCtl, DesignFindsThePapersMinMaxDamperAndProvesIt) {
 }
 
 TEST_F(RobustCtl, AProofIsCheckedAgainstTheConfigAsItIs) {
-  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  ASSERT_EQ(ctl({"certify", wall("5", held()), "-o", proof_}), 0) << ctl_err_;
   check(wall("5", demanded()));
   EXPECT_TRUE(gate_["forces_may_be_enabled"]);
   const struct {
     const char *damping, *model;
-  } others[] = {{"0.4", "mass_uncertainty: 0.5"},
-                {"12", "mass_uncertainty: 0.5"},
-                {"5", "mass_uncertainty: 0.9"}};
+  } others[] = {{"150", "mass_uncertainty: 0.5"},
+                {"5", "mass_uncertainty: 0.99, damping_uncertainty: 1"}};
   for (const auto& other : others) {
     SCOPED_TRACE(std::string(other.damping) + " " + other.model);
     check(wall(other.damping, demanded(), other.model));
@@ -77,7 +91,7 @@ TEST_F(RobustCtl, AProofIsCheckedAgainstTheConfigAsItIs) {
 
 // A random matrix in place of each, a sign turned, a matrix of another order.
 TEST_F(RobustCtl, AProofThatWasTamperedWithProvesNothing) {
-  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  ASSERT_EQ(ctl({"certify", wall("5", held()), "-o", proof_}), 0) << ctl_err_;
   const std::string good = read_text(proof_);
   const auto begin = good.find("- [");
   const struct {
@@ -108,34 +122,113 @@ TEST_F(RobustCtl, AProofForAnotherDeviceOrNoneIsTold) {
 }
 
 TEST_F(RobustCtl, TheDaemonEnablesWhatIsProvedAndNothingElse) {
-  ASSERT_EQ(ctl({"certify", wall("5"), "-o", proof_}), 0) << ctl_err_;
+  ASSERT_EQ(ctl({"certify", wall("5", held()), "-o", proof_}), 0) << ctl_err_;
   const std::string recording = dir_.file("run.hrec");
   ASSERT_EQ(
       ctl({"simulate", wall("5", demanded()), "--duration", "0.5", "-o", recording, "--json"}), 0);
   EXPECT_GT(Json::parse(ctl_out_)["largest_force_N"].get<double>(), 4);
   ASSERT_EQ(
-      ctl({"simulate", wall("0.4", demanded()), "--duration", "0.5", "-o", recording, "--json"}),
+      ctl({"simulate", wall("150", demanded()), "--duration", "0.5", "-o", recording, "--json"}),
       1);
   EXPECT_EQ(Json::parse(ctl_out_)["largest_force_N"].get<double>(), 0);
 }
 
 TEST_F(RobustCtl, HandsThatTheConfigNamesArePartOfTheBox) {
-  const std::string hand =
-      "hand: {mass_kg: [0.05, 0.06], stiffness_N_m: [200, 250], damping_Ns_m: [2, 4]}";
-  ASSERT_EQ(ctl({"certify", wall("5", "require: none, " + hand), "--json", "-o", proof_}), 0)
-      << ctl_err_;
+  ASSERT_EQ(ctl({"certify", wall("5", held()), "--json", "-o", proof_}), 0) << ctl_err_;
   const Json robust = Json::parse(ctl_out_)["robust"][0];
-  EXPECT_THAT(robust["hand"].get<std::string>(), HasSubstr("200 .. 250 N/m"));
+  EXPECT_THAT(robust["hand"].get<std::string>(), HasSubstr("500 .. 800 N/m"));
   EXPECT_GT(robust["cases"].get<int>(), 100);
-  check(wall("5", demanded() + ", " + hand));
+  check(wall("5", demanded()));
   EXPECT_TRUE(gate_["forces_may_be_enabled"]);
   // A heavier hand is not what was proved.
-  check(wall("5",
-             demanded() +
-                 ", hand: {mass_kg: [0.05, 5], stiffness_N_m: [200, 250], damping_Ns_m: [0, 4]}"));
+  check(wall(
+      "5",
+      "require: robust, proof: " + proof_ +
+          ", hand: {mass_kg: [0.05, 50], stiffness_N_m: [500, 800], damping_Ns_m: [0.1, 20]}"));
   EXPECT_FALSE(gate_["forces_may_be_enabled"]);
   EXPECT_EQ(ctl({"check", wall("5", "require: none, hand: {mass_kg: [1, 0.5]}")}), 65);
   EXPECT_THAT(ctl_err_, HasSubstr("stability.hand.mass_kg"));
+}
+
+// Stable while it stays closed is not stable: this wall throws a free device off, further each time.
+TEST_F(RobustCtl, AWallThatIsStableOnlyWhileClosedIsNotProved) {
+  std::string text = read_text(wall("33.742", "require: robust"));
+  replace(text, "stiffness_N_m: 1000", "stiffness_N_m: 1078.63");
+  replace(text, "model: {mass_kg: 0.01, damping_Ns_m: 0.022, mass_uncertainty: 0.5}",
+          "model: {mass_kg: 0.05, damping_Ns_m: 0.02}\n        velocity: {estimator: low_pass, "
+          "cutoff_Hz: 16.77}");
+  std::ofstream(dir_.file("wall.yaml")) << text;
+  EXPECT_EQ(ctl({"certify", dir_.file("wall.yaml"), "--json"}), 1);
+  const Json robust = Json::parse(ctl_out_)["robust"][0];
+  EXPECT_FALSE(robust["proved"]);
+  EXPECT_THAT(robust["while_closed"].get<std::string>(), HasSubstr("proved"));
+  EXPECT_EQ(ctl({"certify", dir_.file("wall.yaml"), "-o", proof_}), 1);
+  EXPECT_FALSE(std::filesystem::exists(proof_));
+}
+
+/// A coupling on one axis, in a workspace of some scale, with stiffness and damping as the axis feels them.
+constexpr const char* kCoupled = R"(version: 1
+devices:
+  - name: finger
+    driver: sim
+    sim: {axes: [{mass_kg: 0.05, damping_Ns_m: 0.5}]}
+    kinematics: {cartesian: {directions: [x]}}
+    workspace_scale: SCALE
+    latency_s: 0
+    axes: [{name: x, encoder: {counts_per_m: 1.0e+9, bits: 40}, actuator: {max_force_N: 30},
+            model: {mass_kg: 0.05, damping_Ns_m: 0.5, mass_uncertainty: 0.3}}]
+coupling: {blocks: [{contacts: [finger], stiffness_N_m: STIFF, damping_Ns_m: DAMP}]}
+scene:
+  - network: {name: spring, elements: [{between: [finger.x, ground], stiffness_N_m: SPRING, damping_Ns_m: DAMP}]}
+stability: {require: none}
+)";
+
+// What the axis feels of a coupling grows with the square of the workspace's scale.
+TEST_F(RobustCtl, ACouplingIsJudgedAsTheAxisFeelsIt) {
+  const auto eigenvalue = [&](double scale, double felt) {
+    std::string text = kCoupled;
+    const auto put = [&](const char* mark, double value) {
+      for (std::size_t at; (at = text.find(mark)) != std::string::npos;)
+        text.replace(at, std::string(mark).size(), std::to_string(value));
+    };
+    put("SCALE", scale);
+    put("STIFF", 1000 * felt);
+    put("SPRING", 500 * felt);
+    put("DAMP", 0.8 * felt);
+    std::ofstream(dir_.file("c.yaml")) << text;
+    ctl({"certify", dir_.file("c.yaml"), "--json"});
+    return Json::parse(ctl_out_)["robust"][0]["largest_eigenvalue"].get<double>();
+  };
+  EXPECT_NEAR(eigenvalue(4, 1.0 / 16), eigenvalue(1, 1), 1e-9);
+  EXPECT_GT(std::abs(eigenvalue(4, 1) - eigenvalue(1, 1)), 1e-3);
+}
+
+TEST_F(RobustCtl, OutputsThatCannotBeAreToldBeforeAnyWork) {
+  const std::string config = wall("1");
+  const std::string before = read_text(config);
+  const std::vector<std::vector<std::string>> verbs{{"zwidth", config},
+                                                    {"sweep", config, "--over", "damping"},
+                                                    {"certify", config},
+                                                    {"design", config},
+                                                    {"design", config, "--proof", "robust"}};
+  for (std::vector<std::string> verb : verbs) {
+    SCOPED_TRACE(testing::PrintToString(verb));
+    const auto to = [&](const std::string& output) {
+      std::vector<std::string> all = verb;
+      all.insert(all.end(), {"-o", output});
+      return ctl(all);
+    };
+    EXPECT_EQ(to(config), 64);
+    EXPECT_EQ(to(dir_.file("none/x")), 73);
+    EXPECT_EQ(to(dir_.path()), 73);
+    EXPECT_EQ(to("/dev/null"), 73);
+  }
+  EXPECT_EQ(read_text(config), before);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  EXPECT_EQ(ctl({"zwidth", config, "-o", dir_.file("z.csv"), "--picture", dir_.file("z.jpg")}), 64);
+  EXPECT_FALSE(std::filesystem::exists(dir_.file("z.csv")));
+  for (const char* bad : {"nan", "-1", "0", "inf"})
+    EXPECT_EQ(ctl({"zwidth", config, "-o", dir_.file("z.csv"), "--force", bad}), 64) << bad;
 }
 
 TEST_F(RobustCtl, ZwidthMeasuresWhatTheExactLoopSays) {
@@ -150,6 +243,7 @@ TEST_F(RobustCtl, ZwidthMeasuresWhatTheExactLoopSays) {
     EXPECT_LE(p["robust_N_m"].get<double>(), 1.01 * exact);
     EXPECT_LE(p["passive_N_m"].get<double>(), 1.01 * exact);
   }
+  EXPECT_THAT(points[4]["why"].get<std::string>(), testing::Not(testing::IsEmpty()));
   EXPECT_NEAR(points[0]["colgate_N_m"].get<double>(), 44, 1e-9);  // 2 * 0.022 / 0.001
   EXPECT_NEAR(points[0]["passive_N_m"].get<double>(), 44, 0.5);
   EXPECT_THAT(read_text(csv), HasSubstr("damping[N s/m],measured[N/m]"));

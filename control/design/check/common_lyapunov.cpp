@@ -1,6 +1,7 @@
 #include "control/design/check/common_lyapunov.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <vector>
@@ -140,16 +141,17 @@ class Prover {
   double margin_ = std::numeric_limits<double>::infinity();
 };
 
-/// What is wrong with box or matrices; empty: nothing.
-std::string unfit(const SampledLoop& loop, const LoopBox& box, const std::vector<Matrix>& P) {
-  if (std::string why = excluded(loop, box); !why.empty()) return why;
-  const Eigen::Index order = 2 + loop.force.states() + remembered_in(loop, box) +
-                             (loop.observer ? observer_of(*loop.observer).states() : 0);
-  for (const Matrix& one : P) {
-    if (std::string why = malformed(one, order, "P"); !why.empty()) return why;
-    if (!positive_definite(symmetric_part(one))) return "P is not positive definite";
-  }
-  return {};
+Eigen::Index order_of(const SampledLoop& loop, const LoopBox& box) {
+  return 2 + loop.force.states() + remembered_in(loop, box) +
+         (loop.observer ? observer_of(*loop.observer).states() : 0);
+}
+
+/// Each costs about the cube of the order.
+std::size_t affordable(std::size_t cells, Eigen::Index order) {
+  constexpr std::size_t kLeast = 40;
+  const double share = std::pow(4.0 / static_cast<double>(std::max<Eigen::Index>(order, 4)), 3);
+  return std::max(std::min(cells, kLeast),
+                  static_cast<std::size_t>(share * static_cast<double>(cells)));
 }
 
 }  // namespace
@@ -180,12 +182,26 @@ std::string excluded(const SampledLoop& loop, const LoopBox& box) {
   return {};
 }
 
+std::string unfit(const SampledLoop& loop, const LoopBox& box, const std::vector<Matrix>& P) {
+  if (std::string why = excluded(loop, box); !why.empty()) return why;
+  const Eigen::Index order = order_of(loop, box);
+  if (order > kMostStates)
+    return "the loop has " + std::to_string(order) + " states, and proofs are looked for up to " +
+           std::to_string(kMostStates);
+  for (const Matrix& one : P) {
+    if (std::string why = malformed(one, order, "P"); !why.empty()) return why;
+    if (!positive_definite(symmetric_part(one))) return "P is not positive definite";
+  }
+  return {};
+}
+
 CommonVerdict proves_common(const SampledLoop& loop, const LoopBox& box, const Matrix& P,
                             std::size_t most_cells) {
   CommonVerdict verdict;
   std::vector<Matrix> list = {P};
   verdict.why = unfit(loop, box, list);
-  return verdict.why.empty() ? Prover(loop, box, list, most_cells).common() : verdict;
+  if (!verdict.why.empty()) return verdict;
+  return Prover(loop, box, list, affordable(most_cells, order_of(loop, box))).common();
 }
 
 CommonVerdict proves_constant(const SampledLoop& loop, const LoopBox& box,
@@ -199,7 +215,8 @@ CommonVerdict completes_constant(const SampledLoop& loop, const LoopBox& box,
                                  std::size_t most_cells) {
   CommonVerdict verdict;
   verdict.why = unfit(loop, box, P);
-  return verdict.why.empty() ? Prover(loop, box, P, most_cells).constant(find) : verdict;
+  if (!verdict.why.empty()) return verdict;
+  return Prover(loop, box, P, affordable(most_cells, order_of(loop, box))).constant(find);
 }
 
 }  // namespace hapticd::check

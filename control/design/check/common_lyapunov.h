@@ -52,9 +52,14 @@ struct CommonVerdict {
   bool refuted = false;  ///< P fails for the loop `at`; else the cells were too many
   LoopCase at;           ///< lumped; the middle of the cell where it ended
 };
-/// Cells that are looked at before an answer is "undecided": about a second, since a daemon that reloads waits for it.
-/// What is searched has to be provable within the same.
+/// Cells that are looked at before an answer is "undecided", of a loop with four states; of larger ones as many as take
+/// the same time. Less than a second, since a daemon that reloads waits for it; what is searched has to be provable
+/// within the same.
 inline constexpr std::size_t kMostCells = 3000;
+/// Larger loops are not looked at.
+inline constexpr int kMostStates = 24;
+/// What is wrong with box or matrices for a proof; empty: nothing.
+std::string unfit(const SampledLoop& loop, const LoopBox& box, const std::vector<Matrix>& P);
 
 /// Whatever changes from tick to tick.
 CommonVerdict proves_common(const SampledLoop& loop, const LoopBox& box, const Matrix& P,

@@ -142,6 +142,10 @@ ObjectShare objects_of(const control::Plan& plan, const ContactPlan& contact, bo
 Behind behind(const control::Plan& plan, const Tied& devices) {
   Behind scene;
   scene.weakness.assign(plan.coordinates, 0);
+  // Without a sweep proxies stay where they are: another loop than the linear one.
+  scene.linear =
+      std::none_of(plan.groups.begin(), plan.groups.end(),
+                   [](const control::GroupPlan& group) { return group.max_sweeps == 0; });
   for (const ContactPlan& contact : plan.contacts) {
     if (std::find(devices.begin(), devices.end(), contact.device) == devices.end()) continue;
     const std::uint32_t end = contact.first_encounter + contact.encounters;

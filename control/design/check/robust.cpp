@@ -23,24 +23,23 @@ RobustAnswer robust(const SampledLoop& loop, const LoopBox& box, const std::vect
   answer.cases = cases.size();
   answer.worst = worst_of(loop, cases);
   if (!(answer.worst.radius < kStableBelow)) {
-    answer.why = "robust: no: " + eigenvalue_at(answer.worst);
+    answer.why = eigenvalue_at(answer.worst);
     return answer;
   }
   if (P.size() == 1) answer.common = proves_common(loop, box, P.front());
   if (answer.common.holds) {
     answer.kind = Robust::proved;
-    answer.why = "robust: proved, whatever changes from tick to tick: " + answer.common.why;
+    answer.why = answer.common.why;
     return answer;
   }
   if (!P.empty()) answer.common = proves_constant(loop, box, P);
   if (answer.common.holds) {
     answer.kind = Robust::proved_constant;
-    answer.why = "robust: proved for devices and hands that do not change: " + answer.common.why;
+    answer.why = answer.common.why;
     return answer;
   }
   answer.kind = Robust::sampled;
-  answer.why =
-      "robust: sampled, " + std::to_string(answer.cases) + " cases; " + eigenvalue_at(answer.worst);
+  answer.why = std::to_string(answer.cases) + " cases; " + eigenvalue_at(answer.worst);
   if (!P.empty()) answer.why += "; " + answer.common.why;
   return answer;
 }

@@ -17,7 +17,7 @@ inline constexpr double kStableBelow = 1 - 1e-9;
 
 struct RobustAnswer {
   Robust kind = Robust::no;
-  std::string why;  ///< "robust: sampled, 243 cases; largest eigenvalue 0.9612 at mass ..; P ..."
+  std::string why;  ///< "243 cases; largest eigenvalue 0.9612 at mass ..", or what proves it
   WorstCase worst;
   std::size_t cases = 0;
   CommonVerdict common;  ///< where there was a P
