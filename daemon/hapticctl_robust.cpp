@@ -53,7 +53,7 @@ std::string hand_text(const std::optional<config::HandRange>& hand) {
 }
 
 std::vector<Matrix> found_for(const AxisLoop& one, const check::LoopBox& box) {
-  if (!check::excluded(one.loop, box).empty()) return {};
+  if (!check::unfit(one.loop, box, {}).empty()) return {};
   auto found = synthesis::find_common(one.loop, box);
   if (found.P.empty()) found = synthesis::find_constant(one.loop, box);
   return found.P;
