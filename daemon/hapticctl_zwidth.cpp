@@ -16,7 +16,7 @@
 #include "daemon/ctl_plot.h"
 #include "daemon/ctl_verbs.h"
 #include "daemon/device_factory.h"
-#include "daemon/hapticctl_zwidth_lines.h"
+#include "daemon/hapticctl_zwidth_report.h"
 #include "daemon/hapticctl_zwidth_trial.h"
 #include "daemon/interrupts.h"
 #include "daemon/lock_file.h"
@@ -40,13 +40,6 @@ constexpr double kKnock = 0.5;          // of the push, for 5 ms
 constexpr double kKnock_s = 5e-3;
 constexpr double kSettle_s = 0.15;
 constexpr int kPriority = 80;
-
-struct Point {
-  double damping = 0;
-  double measured = 0;  ///< N/m; 0: none; infinite: beyond what can be told
-  std::string why;      ///< what ended it
-  StiffestWalls theory;
-};
 
 /// Walls on one axis of one device, one after the other.
 class Zwidth {
@@ -84,8 +77,8 @@ class Zwidth {
   }
 
   /// Greatest stiffness for a damping, and what ended it.
-  Result<Point> measure(double damping) {
-    Point point{.damping = damping, .why = {}, .theory = {}};
+  Result<ZwidthPoint> measure(double damping) {
+    ZwidthPoint point{.damping = damping, .why = {}, .theory = {}};
     const auto measured = stiffest(
         softest(damping), [&](double stiffness) { return holds(stiffness, damping, point); });
     if (!measured) return tl::unexpected(measured.error());
@@ -124,7 +117,7 @@ class Zwidth {
                                {.at_s = kSettle_s + kKnock_s, .force_N = force_N}};
   }
 
-  Result<bool> holds(double stiffness, double damping, Point& point) {
+  Result<bool> holds(double stiffness, double damping, ZwidthPoint& point) {
     unresolved_ = !by_the_clock_ && (push(stiffness, damping) > kGreatestPush * greatest_N_ ||
                                      deflection_m(stiffness, damping) < kResolved * counts_m_);
     if (unresolved_) {
@@ -213,59 +206,12 @@ Result<AxisLoop> only_wall(const config::Compiled& compiled, const ZwidthOptions
   return loops[0];
 }
 
-std::array<double, 6> columns(const Point& p) {
-  return {p.measured,     p.theory.exact,   p.theory.robust,
-          p.theory.paper, p.theory.passive, p.theory.colgate};
-}
-
-/// What is beyond all that is tried is a gap.
-std::string csv_of(const std::vector<Point>& points, const std::string& config) {
-  std::string text =
-      "# Z-width: greatest stiffness of the wall for each damping of it; " + config +
-      "\ndamping[N "
-      "s/m],measured[N/m],exact[N/m],robust[N/m],paper[N/m],passive[N/m],colgate[N/m]\n";
-  for (const Point& p : points) {
-    text += fmt::format("{:.6g}", p.damping);
-    for (const double stiffness : columns(p))
-      text += std::isfinite(stiffness) ? fmt::format(",{:.6g}", stiffness) : ",";
-    text += "\n";
-  }
-  return text;
-}
-
-Json json_of(const std::vector<Point>& points, const std::string& output) {
-  constexpr std::array kNames{"measured_N_m", "exact_N_m",   "robust_N_m",
-                              "paper_N_m",    "passive_N_m", "colgate_N_m"};
-  Json rows = Json::array();
-  for (const Point& p : points) {
-    Json row{{"damping_Ns_m", p.damping}, {"why", p.why}};
-    const auto values = columns(p);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      row[kNames[i]] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
-    rows.push_back(std::move(row));
-  }
-  return {{"ok", true}, {"output", output}, {"points", std::move(rows)}};
-}
-
-std::string text_of(const std::vector<Point>& points) {
-  std::string text = fmt::format("{:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "B/(N s/m)",
-                                 "measured", "exact", "robust", "paper", "passive", "Colgate");
-  for (const Point& p : points) {
-    text += fmt::format("{:10.4g}", p.damping);
-    for (const double stiffness : columns(p))
-      text += std::isfinite(stiffness) ? fmt::format(" {:10.4g}", stiffness)
-                                       : fmt::format(" {:>10}", "beyond");
-    text += p.measured > 0 && std::isfinite(p.measured) ? "\n" : "  " + p.why + "\n";
-  }
-  return text + "greatest stiffness in N/m; 0: none\n";
-}
-
-Result<std::vector<Point>> measure(const config::Compiled& compiled, const AxisLoop& one,
-                                   const ZwidthOptions& options) {
+Result<std::vector<ZwidthPoint>> measure(const config::Compiled& compiled, const AxisLoop& one,
+                                         const ZwidthOptions& options) {
   Zwidth zwidth(compiled.document, one, options);
   if (auto ready = zwidth.prepare(compiled); !ready) return tl::unexpected(ready.error());
   const double to = options.to_Ns_m.value_or(2 * one.mass / one.scale / one.loop.period_s);
-  std::vector<Point> points;
+  std::vector<ZwidthPoint> points;
   for (int i = 0; i < options.points; ++i) {
     const double damping = to * i / (options.points - 1);
     auto point = zwidth.measure(damping);
@@ -296,11 +242,11 @@ ExitCode run_zwidth(const std::string& path, const ZwidthOptions& options, bool 
   if (!one) return print_error(one.error(), json);
   const auto points = measure(*compiled, *one, options);
   if (!points) return print_error(points.error(), json);
-  if (auto written = replace_file(options.output, csv_of(*points, path)); !written)
+  if (auto written = replace_file(options.output, zwidth_csv(*points, path)); !written)
     return print_error(written.error(), json);
-  std::fputs(
-      json ? (to_text(json_of(*points, options.output)) + "\n").c_str() : text_of(*points).c_str(),
-      stdout);
+  std::fputs(json ? (to_text(zwidth_json(*points, options.output)) + "\n").c_str()
+                  : zwidth_text(*points).c_str(),
+             stdout);
   if (options.picture.empty()) return ExitCode::ok;
   return run_plot(options.output, {.output = options.picture}, false);
 }
