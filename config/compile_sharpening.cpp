@@ -4,8 +4,9 @@
 //   g = tau/T + tau (T - tau) lambda / T,    lambda = lambda_max(Delta^-1 K) [1/s],    0 <= g <= 1
 //
 // Delta the least damping of the devices, in contact coordinates: Delta^-1 = J D_q^-1 J'. Springs at
-// the ends of travel take of it, too: then lambda is the fastest rate that any proof allows. All of a
-// group counts together; 0 where the theorem does not apply, or nobody knows the damping.
+// the ends of travel take of it, too, and on a linkage it depends on the pose: then lambda is the
+// fastest rate that any proof allows. All of a group counts together; 0 where the theorem does not
+// apply, or nobody knows the damping.
 #include <Eigen/Core>
 #include <algorithm>
 #include <optional>
@@ -26,11 +27,15 @@ Eigen::Index index_of_size(std::size_t n) {
   return static_cast<Eigen::Index>(n);
 }
 
-/// Delta^-1 of one device [m/(N s)], over all of its coordinates.
+bool is_linkage(const DevicePlace& place) {
+  return !std::holds_alternative<Cartesian>(place.device.kinematics);
+}
+
+/// Delta^-1 of one device [m/(N s)], over all of its coordinates; of a linkage, which has none for all poses, 0.
 std::optional<MatrixXd> mobility(const DevicePlace& place) {
-  if (!std::holds_alternative<Cartesian>(place.device.kinematics)) return {};
   const std::size_t n = place.frame.directions.size();
   MatrixXd made = MatrixXd::Zero(index_of_size(n), index_of_size(n));
+  if (is_linkage(place)) return made;
   for (std::size_t a = 0; a < place.axes.size(); ++a) {
     if (!place.axes[a].model || !(place.axes[a].model->least_damping() > 0)) return {};
     Eigen::VectorXd column(index_of_size(n));  // of J
@@ -53,6 +58,7 @@ bool is_plain_spring(const build::CouplingBlock& block) {
 /// K and Delta^-1 of one group, over the coordinates of all of its devices.
 struct GroupMatrices {
   MatrixXd K, inverse_damping;
+  bool linkage = false;  ///< among its devices
 };
 
 std::optional<GroupMatrices> group_matrices(const Compilation& compilation,
@@ -60,10 +66,11 @@ std::optional<GroupMatrices> group_matrices(const Compilation& compilation,
                                             const std::vector<std::size_t>& groups,
                                             std::size_t group) {
   const std::size_t n = compilation.spec.coordinate_names.size();
-  GroupMatrices made{MatrixXd::Zero(index_of_size(n), index_of_size(n)),
-                     MatrixXd::Zero(index_of_size(n), index_of_size(n))};
+  GroupMatrices made{.K = MatrixXd::Zero(index_of_size(n), index_of_size(n)),
+                     .inverse_damping = MatrixXd::Zero(index_of_size(n), index_of_size(n))};
   for (const DevicePlace& place : places) {
     if (groups[place.index] != group) continue;
+    made.linkage = made.linkage || is_linkage(place);
     const auto own = mobility(place);
     if (!own) return {};
     made.inverse_damping.block(place.first_coordinate, place.first_coordinate, own->rows(),
@@ -97,8 +104,9 @@ void compile_sharpening(Compilation& compilation, const std::vector<DevicePlace>
     if (!(latency_s > 0)) continue;
     const auto group = group_matrices(compilation, places, groups, groups[i]);
     if (!group || latency_s > spec.period_s) continue;
-    const double rate = spec.travels.empty() ? largest_rate(*group)
-                                             : 1 / check::coupled_weight(latency_s, spec.period_s);
+    const bool known = spec.travels.empty() && !group->linkage;
+    const double rate =
+        known ? largest_rate(*group) : 1 / check::coupled_weight(latency_s, spec.period_s);
     if (rate > 0) spec.sharpen[i] = std::min(1.0, check::sharpness(latency_s, spec.period_s, rate));
   }
 }

@@ -179,7 +179,8 @@ class Designer {
       const Gate gate = stability_gate(*compiled);
       bool proved = true;
       for (std::size_t d = 0; d < gate.devices.size(); ++d) {
-        if (gate.devices[d].proved) continue;
+        const check::PassiveAnswer& answer = gate.devices[d];
+        if (answer.proved && answer.damping_used < options_.damping_share) continue;
         proved = false;
         const control::DevicePlan& device = compiled->program->plan().devices[d];
         for (std::size_t i = 0; i < device.coordinates; ++i)

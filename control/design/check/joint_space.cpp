@@ -1,17 +1,37 @@
 // The condition in joint space for devices whose Jacobian depends on the pose, device by device: what
 // ties two of them, W_ij, is taken for |W_ij| on each (2 a'W_ij b <= |W_ij| (|a|^2 + |b|^2)).
+//
+// Under latency tau <= T, springs of a coupling alone, any static scene (Theorem A' on a linkage):
+//
+//   s (J'KJ + 2 F_max |d2x/dq2|) < D_q  at every pose,  s = coupled_weight(tau, T),
+//
+// with the descent check as sharp as any proof needs. Proof. The old torque acts on the joints' motion a,
+// the new one on b, D = a + b. The virtual side takes J_k'f_k.D - e.a,
+//   e = J_k'f_k - J_{k-1}'f_{k-1} = J_k'(f_k - f_{k-1}) + (J_k - J_{k-1})'f_{k-1}.
+// With norms by D_q, let kappa bound J'KJ and m bound F_max d2x/dq2, as quadratic forms, at all poses. Then
+//   f_k.J_k D >= f_k.(x_{k+1} - x_k) - (m/2) |D|^2,   |x_{k+1} - x_k|_K^2 <= kappa |D|^2,
+//   |J_k a|_K^2 <= kappa |a|^2,   |(J_k - J_{k-1})'f_{k-1}.a| <= (m/2) (|D_{k-1}|^2 + |a|^2),
+// and what is left is the inequality of Theorem A' for one axis with K = kappa, D_q = 1, and m |D|^2 +
+// (m/2) |a|^2 beside it: with g <= 1 its terms (kappa/2)(1 + eta) |D|^2 + (kappa/2)(1/g + 1/eta) |a|^2 cover
+// these if kappa is taken for kappa + 2 m.
 #include <Eigen/Dense>
 #include <cmath>
 
 #include "control/design/check/closed_form.h"
 #include "control/design/check/poses.h"
+#include "control/design/check/weights.h"
 
 namespace hapticd::check {
 namespace {
 
 class JointSpace {
  public:
-  JointSpace(const TiedCase& given, double limit) : given_(given), limit_(limit) {}
+  JointSpace(const TiedCase& given, double limit)
+      : given_(given),
+        limit_(limit),
+        late_(given.latency > 0),
+        spring_s_(late_ ? coupled_weight(given.latency, given.plan.period_s)
+                        : 0.5 * given.plan.period_s) {}
 
   PassiveAnswer answer() const {
     PassiveAnswer result;
@@ -27,7 +47,8 @@ class JointSpace {
       joint += given_.plan.devices[d].axes;
       coordinate += given_.plan.devices[d].coordinates;
     }
-    result.theorem = result.proved ? Theorem::any_static_scene : Theorem::none;
+    const Theorem theorem = late_ ? Theorem::any_static_scene_latency : Theorem::any_static_scene;
+    result.theorem = result.proved ? theorem : Theorem::none;
     return result;
   }
 
@@ -35,8 +56,9 @@ class JointSpace {
   std::string problem() const {
     if (!given_.needs.problem.empty()) return given_.needs.problem;
     if (!given_.needs.exact_only.empty()) return given_.needs.exact_only;
-    if (given_.latency > 0)
-      return "latency_s is not zero, and torques are held, not forces: no proof is known for both";
+    if (late_) {
+      if (std::string why = problem_of_latency(); !why.empty()) return why;
+    }
     if (!given_.plain || !given_.model.passive_network || given_.negative)
       return "on a linkage only springs and dampers, and networks of them, are proved";
     if (given_.heavy && !given_.scene.passive())
@@ -50,6 +72,34 @@ class JointSpace {
     return {};
   }
 
+  /// The proof is about springs of a coupling and what stands still behind them.
+  std::string problem_of_latency() const {
+    const Demand& needs = given_.needs;
+    if (!needs.direct.isZero(0) || !needs.direct_damper.isZero(0) || !needs.travel.isZero(0))
+      return "latency_s is not zero, and something is rendered directly on a linkage, or at the "
+             "ends of its "
+             "travel: give its contact a coupling";
+    if (needs.has_observer || !needs.joint_damper.isZero(0) || !needs.coupled_damper.isZero(0) ||
+        given_.damped)
+      return "latency_s is not zero, and a linkage has a coupling with damping, a compensation or "
+             "an observer: no "
+             "proof is known for both";
+    if (given_.heavy)
+      return "latency_s is not zero, and a linkage feels a network with masses: no proof is known "
+             "for both";
+    if (given_.latency > given_.plan.period_s)
+      return "latency_s is longer than a period: no proof is known for a linkage then";
+    const double needed = sharpness(given_.latency, given_.plan.period_s, 1 / spring_s_);
+    for (const control::GroupPlan& group : given_.plan.groups) {
+      const std::size_t contact = given_.plan.group_contacts[group.first_contact];
+      if (is_own(given_.plan.contacts[contact].device) && group.sharpen < needed * (1 - kStrict))
+        return worded(
+            "the loop's descent check is too blunt for this latency: needs %.4g, has %.4g", needed,
+            group.sharpen);
+    }
+    return {};
+  }
+
   bool is_own(std::size_t device) const {
     for (const std::size_t d : given_.devices)
       if (d == device) return true;
@@ -59,8 +109,8 @@ class JointSpace {
   /// W of one device: its own block, and on the diagonal what ties it to others.
   Matrix weight(Eigen::Index first, Eigen::Index count) const {
     const Demand& needs = given_.needs;
-    const Matrix all = 0.5 * given_.plan.period_s * (needs.direct + needs.coupled) +
-                       needs.direct_damper + needs.coupled_damper;
+    const Matrix all =
+        spring_s_ * (needs.direct + needs.coupled) + needs.direct_damper + needs.coupled_damper;
     Matrix others = all.middleRows(first, count);
     Matrix own = others.middleCols(first, count);
     others.middleCols(first, count).setZero();
@@ -69,12 +119,14 @@ class JointSpace {
     return own;
   }
 
-  /// Largest force on the contact, of the scene and of the weight that motors hold there [N].
+  /// Largest force on the contact, of the scene and of the weight that motors hold there [N], as often as it counts.
   double bending_force(std::size_t d) const {
     double weight = 0;
     for (const control::GravityTip& tip : given_.plan.gravity_tips)
       if (tip.device == d) weight = std::hypot(tip.weight[0], tip.weight[1], tip.weight[2]);
-    return given_.plan.devices[d].max_force + weight;
+    // `poses` weighs it with T/2.
+    const double share = late_ ? 4 * spring_s_ / given_.plan.period_s : 1;
+    return share * (given_.plan.devices[d].max_force + weight);
   }
 
   PassiveAnswer of_device(std::size_t d, Eigen::Index joint, Eigen::Index coordinate) const {
@@ -102,6 +154,14 @@ class JointSpace {
     return result;
   }
 
+  /// The left side, with or without what curvature asks.
+  std::string rule(bool curvature) const {
+    if (late_)
+      return worded(curvature ? "%.4g ms (J'KJ + 2 F_max |d2x/dq2|)" : "%.4g ms J'KJ",
+                    1e3 * spring_s_);
+    return curvature ? "J'(K T/2 + B)J + (T/2) F_max |d2x/dq2|" : "J'(K T/2 + B)J";
+  }
+
   void word(const PoseAnswer& poses, double joints, PassiveAnswer& result) const {
     result.why = poses.problem;
     if (!result.why.empty()) return;
@@ -118,29 +178,27 @@ class JointSpace {
       const double springs = poses.share - poses.bending;
       result.stiffness_factor =
           springs > 0 ? (limit_ - joints - poses.bending) / springs : kForEver;
-      result.why = worded(
-                       "J'(K T/2 + B)J + (T/2) F_max |d2x/dq2| < device damping holds at every "
-                       "pose of the guarded workspace: uses at most %.1f %% of the damping "
-                       "(%.1f %% where it was seen worst, curvature at most %.1f %%)",
+      result.why = rule(true) + " < device damping holds at every pose of the guarded workspace: " +
+                   worded(
+                       "uses at most %.1f %% of the damping (%.1f %% where it was seen worst, "
+                       "curvature at most %.1f %%), ",
                        100 * result.damping_used, 100 * found, 100 * poses.bending) +
-                   ", " + result.worst_pose;
+                   result.worst_pose;
       return;
     }
     result.damping_used = std::isfinite(result.damping_used) ? result.damping_used : found;
     result.stiffness_factor = poses.found > 0 ? (limit_ - joints) / poses.found : 0;
     if (found >= limit_) {
       result.damping_used = found;
-      result.why =
-          worded("J'(K T/2 + B)J < device damping fails: needs %.3g times the damping with ",
-                 found) +
-          result.worst_pose;
+      result.why = rule(false) +
+                   worded(" < device damping fails: needs %.3g times the damping with ", found) +
+                   result.worst_pose;
       return;
     }
     result.why =
-        worded(
-            "could not decide whether J'(K T/2 + B)J + (T/2) F_max |d2x/dq2| < device damping "
-            "holds at every pose: %.1f %% of the damping is used with ",
-            100 * found) +
+        "could not decide whether " + rule(true) +
+        worded(" < device damping holds at every pose: %.1f %% of the damping is used with ",
+               100 * found) +
         result.worst_pose +
         (std::isfinite(poses.share)
              ? worded(", and no more than %.1f %% could be shown anywhere",
@@ -151,6 +209,8 @@ class JointSpace {
 
   const TiedCase& given_;
   double limit_;
+  bool late_;
+  double spring_s_;  ///< what a spring asks: N s/m for each N/m
 };
 
 }  // namespace
