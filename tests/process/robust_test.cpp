@@ -249,6 +249,25 @@ TEST_F(RobustCtl, ZwidthMeasuresWhatTheExactLoopSays) {
   EXPECT_THAT(read_text(csv), HasSubstr("damping[N s/m],measured[N/m]"));
 }
 
+// Beyond the limit this device bounces on the wall by less and less: that is not stable.
+TEST_F(RobustCtl, ZwidthDoesNotTakeBouncingForStable) {
+  std::string text = read_text(wall("1"));
+  replace(text, "axes: [{mass_kg: 0.01, damping_Ns_m: 0.022}]",
+          "axes: [{mass_kg: 0.05, damping_Ns_m: 1.37}]");
+  replace(text, "model: {mass_kg: 0.01, damping_Ns_m: 0.022",
+          "model: {mass_kg: 0.05, damping_Ns_m: 1.37");
+  std::ofstream(dir_.file("wall.yaml")) << text;
+  ASSERT_EQ(ctl({"zwidth", dir_.file("wall.yaml"), "-o", dir_.file("z.csv"), "--points", "6",
+                 "--to", "100", "--json"}),
+            0)
+      << ctl_err_;
+  const Json points = Json::parse(ctl_out_)["points"];
+  for (std::size_t i = 1; i < 5; ++i)
+    EXPECT_NEAR(points[i]["measured_N_m"].get<double>() / points[i]["exact_N_m"].get<double>(), 1,
+                0.02)
+        << points[i].dump();
+}
+
 TEST_F(RobustCtl, ZwidthWantsOneWallAndLeavesNoHalfFile) {
   const std::string csv = dir_.file("z.csv");
   EXPECT_EQ(ctl({"zwidth", std::string(HAPTICD_SOURCE_DIR) + "/config/examples/two_devices.yaml",

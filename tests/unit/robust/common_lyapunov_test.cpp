@@ -121,6 +121,19 @@ TEST(CommonLyapunov, WhatIsProvedHoldsForEveryLoopOfTheBox) {
   EXPECT_GT(refused, 30);
 }
 
+// A daemon that reloads waits for the check: what would take long is not begun.
+TEST(CommonLyapunov, ALoopOfTooManyStatesIsNotLookedAt) {
+  check::SampledLoop loop = bilateral_wall(5);
+  check::System large;
+  large.A = 0.5 * Matrix::Identity(40, 40);
+  large.B = Matrix::Ones(40, 2);
+  large.C = Matrix::Zero(1, 40);
+  large.D = loop.force.D;
+  loop.force = large;
+  EXPECT_NE(check::unfit(loop, kHalfBox, {}).find("states"), std::string::npos);
+  EXPECT_EQ(check::unfit(bilateral_wall(5), kHalfBox, {}), "");
+}
+
 TEST(CommonLyapunov, RefusesAFunctionThatDoesNotFit) {
   const SampledLoop loop = bilateral_wall(5);
   const Matrix P = synthesis::find_common(loop, kHalfBox).P.at(0);
