@@ -1,6 +1,7 @@
 #include "daemon/axis_loop.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "config/matrices.h"
 #include "control/design/check/models.h"
@@ -144,6 +145,22 @@ std::vector<AxisLoop> axis_loops(const config::Compiled& compiled) {
   for (std::size_t d = 0; d < compiled.program->plan().devices.size(); ++d)
     loops.push_back(axis_loop(compiled, d));
   return loops;
+}
+
+Result<AxisLoop> only_loop(const config::Compiled& compiled) {
+  std::vector<AxisLoop> loops = axis_loops(compiled);
+  if (loops.size() != 1)
+    return fail(ExitCode::bad_data, "expected one device, found " + std::to_string(loops.size()));
+  if (!loops[0].why.empty()) return fail(ExitCode::bad_data, loops[0].why);
+  return std::move(loops[0]);
+}
+
+Result<AxisLoop> only_wall(const config::Compiled& compiled) {
+  auto one = only_loop(compiled);
+  if (one && !one->wall)
+    return fail(ExitCode::bad_data,
+                "expected one plane that is rendered directly; this scene has another");
+  return one;
 }
 
 std::vector<check::Matrix> proof_of(const config::Compiled& compiled, const std::string& device) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/compile.h"
+#include "control/core/result.h"
 #include "control/design/check/robust.h"
 
 namespace hapticd::daemon {
@@ -28,6 +29,10 @@ struct AxisLoop {
   double mass_share = 0, damping_share = 0;  ///< uncertainties
 };
 std::vector<AxisLoop> axis_loops(const config::Compiled& compiled);
+/// For what looks at one device alone. Errors: bad_data (several devices, or no loop is known).
+Result<AxisLoop> only_loop(const config::Compiled& compiled);
+/// Of a plane that is rendered directly.
+Result<AxisLoop> only_wall(const config::Compiled& compiled);
 
 /// Is a robust answer a proof, for all of its box?
 inline bool is_proof(const check::RobustAnswer& answer) noexcept {

@@ -17,13 +17,6 @@
 namespace hapticd::daemon {
 namespace {
 
-Result<void> write_text(const std::string& path, const std::string& text) {
-  return OutputFile::create(path, IfExists::replace).and_then([&](OutputFile file) -> Result<void> {
-    if (auto written = file.write(text); !written) return written;
-    return file.close();
-  });
-}
-
 /// The config with the file as its coupling, just as the daemon will load it.
 Result<Gate> gate_with(config::Document document, const std::string& file) {
   document.config.coupling = config::Coupling{.file = std::filesystem::absolute(file).string()};
@@ -31,17 +24,6 @@ Result<Gate> gate_with(config::Document document, const std::string& file) {
   const auto compiled = config::compile(std::move(document));
   if (!compiled) return fail(ExitCode::software, config::to_string(compiled.error().front()));
   return stability_gate(*compiled);
-}
-
-int report(const Error& error, bool json) {
-  if (json) {
-    std::puts(
-        to_text({{"ok", false}, {"code", static_cast<int>(error.code)}, {"error", error.text}})
-            .c_str());
-  } else {
-    std::fprintf(stderr, "hapticctl: design: %s\n", error.text.c_str());
-  }
-  return static_cast<int>(error.code);
 }
 
 }  // namespace
@@ -53,26 +35,21 @@ ExitCode run_design(const std::string& path, const DesignOptions& options, bool 
   if (auto writable = check_output(options.output, {path}); !writable)
     return print_error(writable.error(), json);
   const auto file = design_coupling(*document, options);
-  if (!file) return static_cast<ExitCode>(report(file.error(), json));
+  if (!file) return print_error(file.error(), json);
   const std::string body = config::to_yaml(*file);
   const std::string text = body + "digest: \"" + config::digest_of(body) + "\"\n";
-  const std::string draft = options.output + ".new";
-  auto gate = write_text(draft, text).and_then([&] { return gate_with(*document, draft); });
+  const std::string draft = options.output + ".draft";
+  auto gate = replace_file(draft, text).and_then([&] { return gate_with(*document, draft); });
+  std::remove(draft.c_str());
   if (gate && !gate->proved()) {
     gate = fail(ExitCode::no,
                 "what was found is not proved by the daemon's own check, so nothing was "
                 "written:\n" +
                     gate->explanation());
   }
-  if (!gate) {
-    std::remove(draft.c_str());
-    return static_cast<ExitCode>(report(gate.error(), json));
-  }
-  if (std::rename(draft.c_str(), options.output.c_str()) != 0) {
-    std::remove(draft.c_str());
-    return static_cast<ExitCode>(
-        report({options.output + ": cannot be written", ExitCode::cannot_create}, json));
-  }
+  if (!gate) return print_error(gate.error(), json);
+  if (auto written = replace_file(options.output, text); !written)
+    return print_error(written.error(), json);
   if (json) {
     std::puts(
         to_text({{"ok", true}, {"output", options.output}, {"passive", stability_json(*gate)}})

@@ -26,7 +26,6 @@ namespace {
 
 /// What is designed: the damping of the plane, or of every block of the coupling.
 struct Damper {
-  std::size_t device = 0;  ///< index into axis_loops()
   bool wall = false;
   std::string key;  ///< where it stands in the config
 };
@@ -46,12 +45,10 @@ void set_damping(config::Config& config, const Damper& which, double damping) {
 }
 
 Result<Damper> find_damper(const config::Compiled& compiled) {
-  const std::vector<AxisLoop> loops = axis_loops(compiled);
-  if (loops.size() != 1)
-    return fail(ExitCode::bad_data, "expected one device, found " + std::to_string(loops.size()));
-  if (!loops[0].why.empty()) return fail(ExitCode::bad_data, loops[0].why);
+  const auto one = only_loop(compiled);
+  if (!one) return tl::unexpected(one.error());
   config::Config config = compiled.document.config;
-  if (loops[0].wall) {
+  if (one->wall) {
     return Damper{.wall = true, .key = "damping_Ns_m of plane " + wall_of(config).name};
   }
   if (!config.coupling || config.coupling->blocks.empty())
@@ -123,16 +120,14 @@ Result<FoundDamper> coupling_damper(const config::Document& document, const Damp
   const auto radius = [&](double damping) {
     const auto compiled = compiled_with(document, which, damping);
     if (!compiled || interrupts().load()) return std::numeric_limits<double>::infinity();
-    const AxisLoop one = axis_loops(*compiled).at(which.device);
+    const AxisLoop one = axis_loops(*compiled).front();
     if (!one.why.empty()) return std::numeric_limits<double>::infinity();
-    check::LoopBox closed = one.box;
-    closed.contact = {1, 1};
-    worst = check::worst_of(one.loop, check::cases_of(closed));
+    worst = check::worst_of(one.loop, check::cases_of(one.box));
     return worst.radius;
   };
   const auto start = compiled_with(document, which, 0);
   if (!start) return tl::unexpected(start.error());
-  const synthesis::Scan scan = dampers_for(axis_loops(*start).at(which.device));
+  const synthesis::Scan scan = dampers_for(axis_loops(*start).front());
   const synthesis::Least best = synthesis::least(radius, scan);
   if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
   if (std::isfinite(best.value) && at_edge(best.x, scan))
@@ -217,12 +212,12 @@ Result<Designed> design(const config::Document& document, const DesignOptions& o
   if (!compiled) return fail(ExitCode::bad_data, config::to_string(compiled.error().front()));
   const auto which = find_damper(*compiled);
   if (!which) return tl::unexpected(which.error());
-  const AxisLoop start = axis_loops(*compiled).at(which->device);
+  const AxisLoop start = axis_loops(*compiled).front();
   const auto found = which->wall ? wall_damper(*compiled, start) : coupling_damper(*base, *which);
   if (!found) return tl::unexpected(found.error());
   const auto with = compiled_with(*base, *which, found->damping);
   if (!with) return tl::unexpected(with.error());
-  const AxisLoop one = axis_loops(*with).at(which->device);
+  const AxisLoop one = axis_loops(*with).front();
   const auto proof = proof_with(one);
   if (!proof) return tl::unexpected(proof.error());
   const check::RobustAnswer answer =

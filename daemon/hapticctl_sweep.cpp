@@ -155,16 +155,12 @@ ExitCode run_sweep(const std::string& path, const SweepOptions& options, bool js
     return print_error(drawable.error(), json);
   const auto compiled = config::load(path);
   if (!compiled) return print_config_errors(compiled.error(), json);
-  const std::vector<AxisLoop> loops = axis_loops(*compiled);
-  const std::string why = loops.size() != 1 ? "expected one device" : loops[0].why;
-  if (!why.empty() || !loops[0].wall) {
-    const std::string text = why.empty() ? "expected one plane that is rendered directly" : why;
-    return print_error({path + ": " + text, ExitCode::bad_data}, json);
-  }
-  const synthesis::WallGoal goal = paper_goal(loops[0], compiled->document.config.stability.paper);
+  const auto one = only_wall(*compiled);
+  if (!one) return print_error(one.error(), json);
+  const synthesis::WallGoal goal = paper_goal(*one, compiled->document.config.stability.paper);
   if (const std::string wrong = synthesis::malformed(goal); !wrong.empty())
     return print_error({path + ": " + wrong, ExitCode::bad_data}, json);
-  const auto table = sweep(loops[0], goal, options);
+  const auto table = sweep(*one, goal, options);
   if (!table) return print_error(table.error(), json);
   if (auto written = replace_file(options.output, table->text()); !written)
     return print_error(written.error(), json);

@@ -188,22 +188,13 @@ class Zwidth {
   std::optional<ProcessRealtime> realtime_;
 };
 
-Result<AxisLoop> only_wall(const config::Compiled& compiled, const ZwidthOptions& options) {
-  const std::vector<AxisLoop> loops = axis_loops(compiled);
-  if (loops.size() != 1)
-    return fail(ExitCode::bad_data, fmt::format("expected one device, found {}", loops.size()));
-  if (!loops[0].why.empty()) return fail(ExitCode::bad_data, loops[0].why);
-  if (!loops[0].wall)
-    return fail(ExitCode::bad_data,
-                "expected one plane that is rendered directly; this scene has another");
+Result<void> check_consent(const config::Compiled& compiled, const ZwidthOptions& options) {
   const bool real = compiled.document.config.devices.front().driver != config::Driver::sim;
-  if (real && !options.consent) {
-    return fail(ExitCode::no,
-                "zwidth shakes a real device until it is unstable: hold it, keep the e-stop at "
-                "hand, and say so "
-                "with --i-hold-the-device; --force and --travel bound it");
-  }
-  return loops[0];
+  if (!real || options.consent) return {};
+  return fail(ExitCode::no,
+              "zwidth shakes a real device until it is unstable: hold it, keep the e-stop at "
+              "hand, and say so "
+              "with --i-hold-the-device; --force and --travel bound it");
 }
 
 Result<std::vector<ZwidthPoint>> measure(const config::Compiled& compiled, const AxisLoop& one,
@@ -238,8 +229,10 @@ ExitCode run_zwidth(const std::string& path, const ZwidthOptions& options, bool 
   document->config.stability.proof.reset();  // it is about another wall
   auto compiled = config::compile(std::move(*document));
   if (!compiled) return print_config_errors(compiled.error(), json);
-  const auto one = only_wall(*compiled, options);
+  const auto one = only_wall(*compiled);
   if (!one) return print_error(one.error(), json);
+  if (auto consent = check_consent(*compiled, options); !consent)
+    return print_error(consent.error(), json);
   const auto points = measure(*compiled, *one, options);
   if (!points) return print_error(points.error(), json);
   if (auto written = replace_file(options.output, zwidth_csv(*points, path)); !written)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/observed_loop.h"
+#include "tests/support/observer_radii.h"
 
 namespace hapticd::control {
 namespace {
@@ -171,28 +172,17 @@ double robust_radius(Loop loop) {
   return largest;
 }
 
-struct RadiusRow {
-  int order;
-  double wall_Ns_m;  ///< 0: free device, else a wall of 1000 N/m
-  bool late;
-  double radius[11];
-};
-constexpr double kCutoff_Hz[] = {2, 5, 10, 20, 30, 50, 80, 100, 150, 200, 300};
-constexpr RadiusRow kRadius[] = {
-#include "tests/data/paper2/observer_spectral_radius.inc"
-};
-
 TEST(ObserverAnalysis, SpectralRadiusOverMassesChangedByHalf) {
-  for (const RadiusRow& row : kRadius) {
-    for (std::size_t i = 0; i < std::size(kCutoff_Hz); ++i) {
-      Loop loop{.plan = classic_with(kCutoff_Hz[i], row.order),
+  for (const test::ObserverRadii& row : test::kObserverRadii) {
+    for (std::size_t i = 0; i < std::size(test::kObserverCutoff_Hz); ++i) {
+      Loop loop{.plan = classic_with(test::kObserverCutoff_Hz[i], row.order),
                 .wall_N_m = row.wall_Ns_m > 0 ? 1000.0 : 0.0,
                 .wall_Ns_m = row.wall_Ns_m,
                 .late = row.late};
       loop.plan.extra_delay = row.late ? 1 : 0;
       EXPECT_NEAR(robust_radius(loop), row.radius[i], 1e-4)
           << "order " << row.order << ", wall damper " << row.wall_Ns_m << ", late " << row.late
-          << ", " << kCutoff_Hz[i] << " Hz";
+          << ", " << test::kObserverCutoff_Hz[i] << " Hz";
     }
   }
 }

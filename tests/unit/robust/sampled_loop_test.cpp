@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "control/design/synthesis/exact_index.h"
+#include "tests/support/observer_radii.h"
 #include "tests/support/paper2_loop.h"
 
 namespace hapticd::test {
@@ -71,26 +72,15 @@ TEST(SampledLoop, MostTransparentDampersAreTheReferences) {
   }
 }
 
-struct ObservedRow {
-  int order;
-  double wall_Ns_m;  ///< 0: free device, else a wall of 1000 N/m
-  bool late;
-  double radius[11];
-};
-constexpr double kObservedCutoff_Hz[] = {2, 5, 10, 20, 30, 50, 80, 100, 150, 200, 300};
-constexpr ObservedRow kObserved[] = {
-#include "tests/data/paper2/observer_spectral_radius.inc"
-};
-
 TEST(SampledLoop, WithAClassicObserverRadiiAreTheReferences) {
-  for (const ObservedRow& row : kObserved) {
-    for (std::size_t i = 0; i < std::size(kObservedCutoff_Hz); ++i) {
+  for (const test::ObserverRadii& row : test::kObserverRadii) {
+    for (std::size_t i = 0; i < std::size(test::kObserverCutoff_Hz); ++i) {
       synthesis::SampledWall wall = paper2_wall();
       wall.observer = build::observer(0, 0,
                                       {.mode = build::ObserverMode::classic,
                                        .nominal_mass_kg = 0.01,
                                        .nominal_damping_Ns_m = 0.022,
-                                       .cutoff_Hz = kObservedCutoff_Hz[i],
+                                       .cutoff_Hz = test::kObserverCutoff_Hz[i],
                                        .order = row.order,
                                        .delay_ticks = static_cast<std::uint16_t>(row.late),
                                        .max_output = 1e9},
@@ -101,7 +91,7 @@ TEST(SampledLoop, WithAClassicObserverRadiiAreTheReferences) {
       for (LoopCase& one : cases) one.contact = free ? 0 : 1;
       EXPECT_NEAR(check::worst_of(loop_of(wall, row.wall_Ns_m), cases).radius, row.radius[i], 1e-4)
           << "order " << row.order << ", wall " << row.wall_Ns_m << ", late " << row.late << ", "
-          << kObservedCutoff_Hz[i] << " Hz";
+          << test::kObserverCutoff_Hz[i] << " Hz";
     }
   }
 }
