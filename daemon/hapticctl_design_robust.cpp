@@ -70,9 +70,10 @@ Result<config::Compiled> compiled_with(config::Document document, const Damper& 
 
 constexpr const char* kInterrupted = "interrupted; nothing was written";
 
-/// In units of mass/period, beyond which no loop of this kind is stable.
-synthesis::Scan dampers_for(const AxisLoop& one) {
-  const double unit = one.box.mass_kg.high / one.loop.period_s;
+/// In units of mass/period, beyond which no loop of this kind is stable; as the axis feels them, or as the config has
+/// them, with its scale.
+synthesis::Scan dampers_for(const AxisLoop& one, double scale = 1) {
+  const double unit = one.box.mass_kg.high / one.loop.period_s / scale;
   return {.low = 1e-4 * unit, .high = 4 * unit, .points = 80};
 }
 bool at_edge(double damper, const synthesis::Scan& scan) {
@@ -127,7 +128,8 @@ Result<FoundDamper> coupling_damper(const config::Document& document, const Damp
   };
   const auto start = compiled_with(document, which, 0);
   if (!start) return tl::unexpected(start.error());
-  const synthesis::Scan scan = dampers_for(axis_loops(*start).front());
+  const AxisLoop undamped = axis_loops(*start).front();
+  const synthesis::Scan scan = dampers_for(undamped, undamped.scale);
   const synthesis::Least best = synthesis::least(radius, scan);
   if (interrupts().load()) return fail(ExitCode::try_again, kInterrupted);
   if (std::isfinite(best.value) && at_edge(best.x, scan))

@@ -203,6 +203,38 @@ TEST_F(RobustCtl, ACouplingIsJudgedAsTheAxisFeelsIt) {
   EXPECT_GT(std::abs(eigenvalue(4, 1) - eigenvalue(1, 1)), 1e-3);
 }
 
+TEST_F(RobustCtl, TheDampingOfACouplingIsDesignedAndProvedInAnyWorkspace) {
+  const auto config = [&](double scale, double damping, const std::string& stability) {
+    std::string text = kCoupled;
+    const double felt = 1 / (scale * scale);
+    const auto put = [&](const char* mark, const std::string& value) {
+      for (std::size_t at; (at = text.find(mark)) != std::string::npos;)
+        text.replace(at, std::string(mark).size(), value);
+    };
+    put("SCALE", std::to_string(scale));
+    put("STIFF", std::to_string(1000 * felt));
+    put("SPRING", std::to_string(500 * felt));
+    replace(text, "damping_Ns_m: DAMP}]}", "damping_Ns_m: " + std::to_string(damping) + "}]}");
+    put("DAMP", std::to_string(0.8 * felt));
+    replace(text, "require: none", stability);
+    std::ofstream(dir_.file("c.yaml")) << text;
+    return dir_.file("c.yaml");
+  };
+  double found[2] = {};
+  for (const int i : {0, 1}) {
+    const double scale = i == 0 ? 1 : 200;
+    ASSERT_EQ(ctl({"design", config(scale, 0, "require: none"), "--proof", "robust", "-o", proof_,
+                   "--json"}),
+              0)
+        << ctl_err_;
+    const double damping = Json::parse(ctl_out_)["damping_Ns_m"];
+    found[i] = damping * scale * scale;
+    check(config(scale, damping, "require: robust, proof: " + proof_));
+    EXPECT_TRUE(gate_["forces_may_be_enabled"]) << gate_.dump();
+  }
+  EXPECT_NEAR(found[1] / found[0], 1, 2e-3);
+}
+
 TEST_F(RobustCtl, OutputsThatCannotBeAreToldBeforeAnyWork) {
   const std::string config = wall("1");
   const std::string before = read_text(config);
