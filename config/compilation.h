@@ -34,6 +34,9 @@ class Compilation {
   std::optional<sim::SharedHandOptions> shared_hand;
   std::vector<FeltObjects> felt;  ///< per device
   std::vector<check::DeviceAssumption> assumed;
+  std::vector<std::optional<can::DeviceOptions>> can;  ///< per device
+  std::vector<can::BusLoad> buses;
+  double collect_s = 0;
   std::vector<ConfigError> errors;
 
   const Document& document() const { return document_; }
@@ -79,6 +82,8 @@ void compile_guard(Compilation& compilation, const DevicePlace& place);
 void compile_simulated(Compilation& compilation, const DevicePlace& place);
 /// Refuses a cutoff of half the rate or more, at `path`.cutoff_Hz.
 void check_cutoff(Compilation& compilation, const std::string& path, double cutoff_Hz);
+/// Devices of CAN drives, and whether their buses have room for them.
+void compile_buses(Compilation& compilation, const std::vector<DevicePlace>& places);
 /// Of all devices; what follows knows what it names.
 void compile_coupling(Compilation& compilation);
 void compile_scene(Compilation& compilation, const std::vector<DevicePlace>& places);

@@ -81,6 +81,7 @@ void compile_all(Compilation& compilation) {
     compile_guard(compilation, place);
     compile_simulated(compilation, place);
   }
+  compile_buses(compilation, places);
   if (compilation.errors.empty()) compile_world(compilation, places);
   compile_assumptions(compilation, places);
 }
@@ -247,6 +248,9 @@ Checked<Compiled> compile(Document document) {
   compiled.program = std::make_unique<build::Program>(std::move(compilation.spec));
   compiled.simulated = std::move(compilation.simulated);
   compiled.shared_hand = std::move(compilation.shared_hand);
+  compiled.can = std::move(compilation.can);
+  compiled.buses = std::move(compilation.buses);
+  compiled.collect_s = compilation.collect_s;
   compiled.assumed = std::move(compilation.assumed);
   compiled.document = std::move(document);
   compile_certificate(compiled);

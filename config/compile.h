@@ -11,6 +11,8 @@
 #include "config/schema.h"
 #include "control/build/program.h"
 #include "control/design/check/stability.h"
+#include "drivers/can/budget.h"
+#include "drivers/can/options.h"
 #include "sim/options.h"
 
 namespace hapticd::check {
@@ -58,6 +60,9 @@ struct Compiled {
   std::unique_ptr<build::Program> program;
   std::vector<sim::DeviceOptions> simulated;
   std::optional<sim::SharedHandOptions> shared_hand;  ///< of the simulated devices
+  std::vector<std::optional<can::DeviceOptions>> can;  ///< `can[i]` belongs to device i
+  std::vector<can::BusLoad> buses;
+  double collect_s = 0;  ///< the loop waits so long for samples, from its tick's start
   std::vector<check::DeviceAssumption> assumed;
   /// Of a designed coupling; the check goes by it only as far as it holds.
   std::shared_ptr<const check::Certificate> certificate;

@@ -242,6 +242,11 @@ void add_force_sensor(Compilation& compilation, const DevicePlace& place, const 
                          "], as the simulated sensor of this device has them");
 }
 
+/// Enough to stand in for the device.
+bool has_models(const Device& device) {
+  return std::ranges::all_of(device.axes, [](const Axis& axis) { return axis.model.has_value(); });
+}
+
 }  // namespace
 
 void compile_simulated(Compilation& compilation, const DevicePlace& place) {
@@ -249,7 +254,7 @@ void compile_simulated(Compilation& compilation, const DevicePlace& place) {
   sim::DeviceOptions options;
   options.name = device.name;
   options.period_s = compilation.spec.period_s;
-  if (device.driver == Driver::sim) {
+  if (device.driver == Driver::sim || device.sim || has_models(device)) {
     const Sim sim = device.sim.value_or(Sim{});
     options.ramp_s = place.guard.ramp_s;
     options.substeps = sim.substeps;
@@ -260,9 +265,6 @@ void compile_simulated(Compilation& compilation, const DevicePlace& place) {
     add_failures(compilation, place, sim, options);
     add_digital(compilation, place, sim, options);
     add_force_sensor(compilation, place, sim, options);
-  } else if (device.sim) {
-    compilation.refuse(place.path + ".sim",
-                       "only a device with driver: sim has this key; remove it");
   }
   compilation.simulated.push_back(std::move(options));
 }

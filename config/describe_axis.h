@@ -187,6 +187,35 @@ void describe(V& v, Travel& s) {
 }
 
 template <class V>
+void describe(V& v, CanDrive& s) {
+  v.required("node", s.node,
+             {.about = "id of the drive: odrive 0 to 62, moteus 1 to 126, cia402 1 to 127",
+              .min = 0,
+              .max = 127});
+  v.required("counts_per_turn", s.counts_per_turn,
+             {.about = "encoder counts in one turn of the motor; with those per metre or "
+                       "revolution of the axis it gives the torque for an effort",
+              .min = 0,
+              .max = 1e12,
+              .above_min = true,
+              .unit = "counts/turn"});
+  v.optional("interface", s.interface, {.about = "of this drive; null: the device's"});
+  v.optional("max_current_A", s.max_current_A,
+             {.about = "odrive: current limit that it is told; null: as set in the drive",
+              .min = 0,
+              .max = 1000,
+              .above_min = true,
+              .unit = "A"});
+  v.optional("max_velocity_turns_s", s.max_velocity_turns_s,
+             {.about = "odrive: velocity limit that goes with max_current_A; near it the drive "
+                       "weakens its torque; null: twice what the guard allows",
+              .min = 0,
+              .max = 10'000,
+              .above_min = true,
+              .unit = "turns/s"});
+}
+
+template <class V>
 void describe(V& v, Axis& s) {
   v.required("name", s.name,
              {.about = "of the axis, unique in its device", .form = TextForm::name});
@@ -204,6 +233,7 @@ void describe(V& v, Axis& s) {
              {.about = "friction and weight that the motor takes over"});
   v.optional("homing", s.homing, {.about = "how the axis finds its zero"});
   v.optional("travel", s.travel, {.about = "where the axis may be; null: anywhere"});
+  v.optional("can", s.can, {.about = "its drive, with a driver for CAN; null: none"});
 }
 
 }  // namespace hapticd::config

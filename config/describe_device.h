@@ -232,12 +232,64 @@ void describe(V& v, Guard& s) {
 }
 
 template <class V>
+void describe(V& v, CanBus& s) {
+  v.required("interface", s.interface, {.about = "the CAN interface, such as can0"});
+  v.required("watchdog_s", s.watchdog_s,
+             {.about = "a drive that hears no command for so long goes off by itself: longer than "
+                       "guard.max_stale_ticks and one, at most 50 ms; arming proves it",
+              .min = 0,
+              .max = 0.05,
+              .above_min = true,
+              .unit = "s"});
+  v.optional("timing", s.timing,
+             {.about = "when drives measure: asked for in each tick (any driver), on their own "
+                       "clock (odrive), with each command (moteus); null: free_running, "
+                       "reply_to_command, and for cia402 in_phase, by SYNC"});
+  v.optional("bitrate_Hz", s.bitrate_Hz,
+             {.about = "of the interface", .min = 10'000, .max = 1e6, .unit = "Hz"});
+  v.optional("data_bitrate_Hz", s.data_bitrate_Hz,
+             {.about = "moteus: of the data of FD frames", .min = 1e5, .max = 1e7, .unit = "Hz"});
+  v.optional("turnaround_s", s.turnaround_s,
+             {.about = "a drive begins to answer so long after a question, at most",
+              .min = 0,
+              .max = 0.1,
+              .unit = "s"});
+  v.optional("drive_delay_s", s.drive_delay_s,
+             {.about = "a torque acts so long after its frame came, at most",
+              .min = 0,
+              .max = 0.1,
+              .unit = "s"});
+  v.optional("estimates_every_s", s.estimates_every_s,
+             {.about = "odrive, free_running: time between its positions, "
+                       "encoder_msg_rate_ms of the drive",
+              .min = 0.001,
+              .max = 1,
+              .unit = "s"});
+  v.optional("heartbeat_every_s", s.heartbeat_every_s,
+             {.about = "time between heartbeats of a drive: odrive as set in it "
+                       "(heartbeat_msg_rate_ms), cia402 is told",
+              .min = 0.001,
+              .max = 1,
+              .unit = "s"});
+  v.optional("host_id", s.host_id,
+             {.about = "of hapticd on the bus: moteus 0 to 127; cia402 1 to 127, 0 stands for 127",
+              .min = 0,
+              .max = 127});
+  v.optional("prefix", s.prefix, {.about = "moteus: can.prefix of the servos", .min = 0, .max = 8191});
+  v.optional("ignore_position_bounds", s.ignore_position_bounds,
+             {.about = "moteus: torque beyond servopos.position_min and position_max too, which "
+                       "are very narrow as delivered"});
+}
+
+template <class V>
 void describe(V& v, Device& s) {
   v.required("name", s.name, {.about = "of the device, unique", .form = TextForm::name});
   v.required("driver", s.driver, {.about = "what speaks to the device"});
   v.optional(
       "sim", s.sim,
-      {.about = "truth of a simulated device, only with driver: sim; null: it equals the model"});
+      {.about = "truth of a simulated device, or of one that `hapticctl emulate` stands in for; "
+                "null: it equals the model"});
+  v.optional("can", s.can, {.about = "the bus, with a driver for CAN; null: none"});
   v.required("kinematics", s.kinematics,
              {.about = "how axes move the contact: a map with one key, the kind"});
   v.optional("pose", s.pose, {.about = "where the device stands in the world"});

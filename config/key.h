@@ -84,7 +84,12 @@ struct Words<FreeSide> {
 };
 template <>
 struct Words<Driver> {
-  static constexpr std::array<std::string_view, 1> list{"sim"};
+  static constexpr std::array<std::string_view, 4> list{"sim", "odrive", "moteus", "cia402"};
+};
+template <>
+struct Words<CanTiming> {
+  static constexpr std::array<std::string_view, 3> list{"in_phase", "free_running",
+                                                        "reply_to_command"};
 };
 template <>
 struct Words<Require> {

@@ -134,6 +134,16 @@ struct Travel {
   bool operator==(const Travel&) const = default;
 };
 
+/// The drive of an axis on a CAN bus.
+struct CanDrive {
+  int node = 0;
+  double counts_per_turn = 0;                    ///< of the motor's encoder
+  std::optional<std::string> interface {};       ///< default: the device's
+  std::optional<double> max_current_A{};         ///< odrive; default: as set in the drive
+  std::optional<double> max_velocity_turns_s{};  ///< odrive, with max_current_A; default: twice the guard's
+  bool operator==(const CanDrive&) const = default;
+};
+
 struct Axis {
   std::string name;
   AxisKind kind = AxisKind::linear;
@@ -145,6 +155,7 @@ struct Axis {
   Compensation compensation;
   Homing homing;
   std::optional<Travel> travel;
+  std::optional<CanDrive> can;  ///< with a driver for CAN
   bool operator==(const Axis&) const = default;
 };
 

@@ -112,11 +112,29 @@ struct Guard {
   bool operator==(const Guard&) const = default;
 };
 
-enum class Driver { sim };
+enum class Driver { sim, odrive, moteus, cia402 };
+enum class CanTiming { in_phase, free_running, reply_to_command };
+/// The bus of a device of CAN drives.
+struct CanBus {
+  std::string interface;
+  double watchdog_s = 0;
+  std::optional<CanTiming> timing;  ///< default: the driver's
+  double bitrate_Hz = 1e6;
+  double data_bitrate_Hz = 5e6;  ///< moteus
+  double turnaround_s = 1e-4;
+  double drive_delay_s = 1e-4;
+  double estimates_every_s = 1e-3;      ///< odrive
+  double heartbeat_every_s = 0.1;       ///< odrive, cia402
+  int host_id = 0;                      ///< moteus: 0 to 127; cia402: 1 to 127, 0 stands for 127
+  int prefix = 0;                       ///< moteus
+  bool ignore_position_bounds = false;  ///< moteus
+  bool operator==(const CanBus&) const = default;
+};
 struct Device {
   std::string name;
   Driver driver = Driver::sim;
-  std::optional<Sim> sim;  ///< only with driver: sim
+  std::optional<Sim> sim;    ///< of a simulated or emulated device
+  std::optional<CanBus> can;  ///< with a driver for CAN
   Kinematics kinematics;
   Pose pose;
   double workspace_scale = 1;

@@ -1,5 +1,6 @@
 #include "daemon/device_factory.h"
 
+#include "drivers/can/can_device.h"
 #include "sim/shared_hand.h"
 #include "sim/sim_device.h"
 
@@ -13,6 +14,11 @@ std::vector<std::unique_ptr<drivers::Device>> make_devices(const config::Compile
     hand = std::make_shared<sim::SharedHand>(*compiled.shared_hand, compiled.simulated);
   for (std::size_t i = 0; i < described.size(); ++i) {
     switch (described[i].driver) {
+      case config::Driver::odrive:
+      case config::Driver::moteus:
+      case config::Driver::cia402:
+        devices.push_back(std::make_unique<can::CanDevice>(*compiled.can[i]));
+        break;
       case config::Driver::sim:
         devices.push_back(hand && hand->holds(i)
                               ? std::make_unique<sim::SimDevice>(hand, i)

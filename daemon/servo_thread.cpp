@@ -108,7 +108,7 @@ void ServoThread::tick(const Wake& wake, bool ending) noexcept {
   adopt_plan();
   CycleInput input{.time = {.tick = wake.tick,
                             .start_ns = wake.start_ns,
-                            .deadline_ns = wake.start_ns + options_.schedule.period_ns / 2},
+                            .deadline_ns = wake.start_ns + options_.collect_ns},
                    .missed_ticks = wake.missed_ticks,
                    .host_fault = wake.fault,
                    .enable = !ending && shared_.enable.load(std::memory_order_relaxed)};

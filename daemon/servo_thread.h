@@ -17,6 +17,7 @@ namespace hapticd::daemon {
 
 struct ServoOptions {
   TickScheduleOptions schedule{};
+  std::int64_t collect_ns = 500'000;  ///< samples are waited for so long, from the tick's start
   int priority = 80;
   std::optional<int> cpu{};
 };

@@ -154,6 +154,21 @@ std::optional<std::int16_t> torque_raw(double torque_Nm, double rated_torque_Nm)
   return static_cast<std::int16_t>(std::clamp(raw, -32768.0, 32767.0));
 }
 
+Frame heartbeat(std::uint8_t node, NodeState state) noexcept {
+  Frame frame = frame_of(kGuard + node, 1);
+  frame.data[0] = static_cast<std::uint8_t>(state);
+  return frame;
+}
+
+bool is_sync(const Frame& frame) noexcept {
+  return frame.id == kEmergency && !frame.extended && !frame.remote && !frame.fd && !frame.error;
+}
+
+bool is_nmt(const Frame& frame, std::uint8_t node) noexcept {
+  return frame.id == 0 && !frame.extended && !frame.remote && !frame.fd && !frame.error &&
+         frame.size >= 2 && (frame.data[1] == 0 || frame.data[1] == node);
+}
+
 Frame rpdo1(std::uint8_t node, std::uint16_t control, std::int16_t torque_raw) noexcept {
   Frame frame = frame_of(kRpdo1 + node, 4);
   put(frame, 0, control);

@@ -23,6 +23,9 @@ enum class Nmt : std::uint8_t {
 /// node 0: all.
 Frame nmt(Nmt command, std::uint8_t node) noexcept;
 Frame sync() noexcept;
+bool is_sync(const Frame& frame) noexcept;
+/// A command to this node, or to all.
+bool is_nmt(const Frame& frame, std::uint8_t node) noexcept;
 
 enum class NodeState : std::uint8_t {
   boot_up = 0,
@@ -30,6 +33,9 @@ enum class NodeState : std::uint8_t {
   operational = 5,
   pre_operational = 127
 };
+
+/// What a node says of itself.
+Frame heartbeat(std::uint8_t node, NodeState state) noexcept;
 
 // -- objects, one at a time: outside the loop only
 

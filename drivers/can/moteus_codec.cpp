@@ -118,47 +118,61 @@ std::optional<Frame> Writer::finish() noexcept {
 
 namespace {
 
-void ask(Writer& writer) noexcept {
-  writer.read(Register::mode, Format::int8)
-      .read(Register::position, Format::real)
-      .read(Register::velocity, Format::real)
-      .read(Register::torque, Format::real)
-      .read(Register::voltage, Format::int8)
-      .read(Register::temperature, Format::int8)
-      .read(Register::fault, Format::int8);
+void add(Writer& writer, const Query& query) noexcept {
+  writer.read(Register::mode, Format::int8).read(Register::position, Format::real);
+  if (query.motion)
+    writer.read(Register::velocity, Format::real).read(Register::torque, Format::real);
+  if (query.supply)
+    writer.read(Register::voltage, Format::int8).read(Register::temperature, Format::int8);
+  writer.read(Register::fault, Format::int8);
+  if (query.settings)
+    writer.read(Register::maximum_torque, Format::real)
+        .read(Register::watchdog_timeout, Format::real);
+  if ((query.tag & 1) != 0) writer.read(Register::millisecond_counter, Format::int8);
+  if ((query.tag & 2) != 0) writer.read(Register::register_map_version, Format::int8);
 }
 
 }  // namespace
 
-std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command) noexcept {
+std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command,
+                                    const std::optional<Query>& query) noexcept {
   if (!std::isfinite(command.torque_Nm) || !std::isfinite(command.maximum_torque_Nm) ||
       !std::isfinite(command.watchdog_s) ||
       std::abs(command.torque_Nm) > std::numeric_limits<float>::max())
     return std::nullopt;
-  Writer writer(to_servo(address, true));
+  Writer writer(to_servo(address, query.has_value()));
   writer.write(Register::mode, Format::int8, static_cast<double>(Mode::position))
-      .write(Register::command_position, Format::real, std::nan(""))
-      .write(Register::command_velocity, Format::real, 0)
+      .write(Register::command_position, Format::int8, std::nan(""))
+      .write(Register::command_velocity, Format::int8, 0)
       .write(Register::feedforward_torque, Format::real, command.torque_Nm)
-      .write(Register::kp_scale, Format::real, 0)
-      .write(Register::kd_scale, Format::real, 0)
+      .write(Register::kp_scale, Format::int8, 0)
+      .write(Register::kd_scale, Format::int8, 0)
       .write(Register::maximum_torque, Format::real, command.maximum_torque_Nm)
       .write(Register::watchdog_timeout, Format::real, command.watchdog_s)
-      .write(Register::ilimit_scale, Format::real, 0);
-  ask(writer);
+      .write(Register::ilimit_scale, Format::int8, 0);
+  if (command.ignore_position_bounds)
+    writer.write(Register::ignore_position_bounds, Format::int8, 1);
+  if (query) add(writer, *query);
   return writer.finish();
 }
 
-Frame stop(const Address& address) noexcept {
-  Writer writer(to_servo(address, true));
+Frame stop(const Address& address, const std::optional<Query>& query) noexcept {
+  Writer writer(to_servo(address, query.has_value()));
   writer.write(Register::mode, Format::int8, static_cast<double>(Mode::stopped));
-  ask(writer);
+  if (query) add(writer, *query);
   return *writer.finish();
 }
 
-Frame query(const Address& address) noexcept {
+Frame ask(const Address& address, const Query& query) noexcept {
   Writer writer(to_servo(address, true));
-  ask(writer);
+  add(writer, query);
+  return *writer.finish();
+}
+
+Frame ask_identity(const Address& address) noexcept {
+  Writer writer(to_servo(address, true));
+  writer.read(Register::register_map_version, Format::int32)
+      .read(Register::serial_number, Format::int32);
   return *writer.finish();
 }
 

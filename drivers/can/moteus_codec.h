@@ -96,16 +96,30 @@ class Writer {
   bool good_ = true;
 };
 
+/// What is asked for beside mode, position and fault.
+struct Query {
+  bool motion = false;    ///< velocity and torque
+  bool supply = false;    ///< voltage and temperature
+  bool settings = false;  ///< what the running command has as maximum torque and watchdog
+  /// 0 to 3: asks for other registers each, so that a reply says which question it answers.
+  int tag = 0;
+};
+
 /// Of one tick. Torque alone: position NaN, no gains, no integrator.
 struct TorqueCommand {
   double torque_Nm = 0;
   double maximum_torque_Nm = 0;  ///< the servo clips there
   double watchdog_s = 0;
+  bool ignore_position_bounds = false;
 };
-/// With a query of mode, position, velocity, torque, voltage, temperature and fault. Nothing: not finite.
-std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command) noexcept;
-Frame stop(const Address& address) noexcept;
-Frame query(const Address& address) noexcept;
+/// At most 48 bytes; the reply has at most 24 where only a tag is asked for. Without a query there is none. Nothing: not
+/// finite.
+std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command,
+                                    const std::optional<Query>& query) noexcept;
+Frame stop(const Address& address, const std::optional<Query>& query) noexcept;
+Frame ask(const Address& address, const Query& query) noexcept;
+/// Asks which register map the servo has, and its serial number.
+Frame ask_identity(const Address& address) noexcept;
 
 // -- from the servo
 
@@ -116,6 +130,10 @@ struct Reply {
   std::optional<double> mode{}, position{}, velocity{}, torque{}, voltage{}, temperature{}, fault{},
       milliseconds{};
   std::optional<std::int32_t> register_map_version{};
+  std::optional<double> maximum_torque{}, watchdog{};  ///< of the running command
+  std::optional<std::int32_t> serial_number{};         ///< its first third
+  /// Of the question.
+  int tag() const noexcept { return (milliseconds ? 1 : 0) + (register_map_version ? 2 : 0); }
 };
 struct RegisterError {
   bool write = false;

@@ -98,6 +98,15 @@ void store(Reply& reply, std::uint32_t which, double value) noexcept {
     case Register::register_map_version:
       if (std::abs(value) < 1e9) reply.register_map_version = static_cast<std::int32_t>(value);
       break;
+    case Register::maximum_torque:
+      reply.maximum_torque = value;
+      break;
+    case Register::watchdog_timeout:
+      reply.watchdog = value;
+      break;
+    case Register::serial_number:
+      if (std::abs(value) <= 2147483647) reply.serial_number = static_cast<std::int32_t>(value);
+      break;
     default:
       break;
   }

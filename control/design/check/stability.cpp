@@ -79,6 +79,18 @@ int missed_ticks(double hold_s, double period_s) {
   return static_cast<int>(std::clamp(std::ceil(hold_s / period_s) - 2, 0.0, kMost));
 }
 
+/// Theorem A' holds for any latency up to the stated one in every tick; what else is proved here holds for one that stays
+/// as it is.
+void refuse_varying_latency(const std::vector<DeviceAssumption>& assumed, const Tied& devices,
+                            PassiveAnswer& answer) {
+  const bool varies = std::ranges::any_of(
+      devices, [&](std::size_t d) { return assumed[d].latency_varies && assumed[d].latency_s > 0; });
+  if (!answer.proved || !varies || answer.theorem == Theorem::any_static_scene_latency) return;
+  answer.proved = false;
+  answer.why += "; but that is for samples of one age, and those of this device come now older, "
+                "now younger: a coupling of springs alone is proved for that (Theorem A')";
+}
+
 PassiveAnswer answer_of(const control::Plan& plan, const std::vector<DeviceAssumption>& assumed,
                         const Tied& devices, const Certificate* certificate) {
   PassiveAnswer answer;
@@ -92,6 +104,7 @@ PassiveAnswer answer_of(const control::Plan& plan, const std::vector<DeviceAssum
   answer = given.jointed ? joint_space_form(given, limit) : closed_form(given, limit);
   if (!answer.proved && certificate && !given.jointed && given.needs.problem.empty())
     take_certificate(given, *certificate, answer);
+  refuse_varying_latency(assumed, devices, answer);
   if (answer.longest_hold_s > 0)
     answer.missed_ticks = missed_ticks(answer.longest_hold_s, plan.period_s);
   if (devices.size() > 1 && answer.damping_used > 0)

@@ -64,6 +64,7 @@ struct ObjectNote {
 struct DeviceAssumption {
   std::string name;
   double latency_s = 0;
+  bool latency_varies = false;           ///< up to that, from tick to tick
   std::vector<double> min_damping;       ///< N s/m or N m s/rad per axis; empty: no model given
   std::vector<std::string> obstacles{};  ///< why nothing can be proved for this device
   std::vector<ObjectNote> active{};      ///< objects it feels that give energy of their own

@@ -87,23 +87,49 @@ TEST(MoteusCodec, TheDriversOwnFramesAreThoseOfTheVectors) {
     }
     return std::string();
   };
-  const auto torque =
-      torque_command({}, {.torque_Nm = 0.25, .maximum_torque_Nm = 1, .watchdog_s = 0.1});
-  ASSERT_TRUE(torque);
-  EXPECT_EQ(hex(torque->payload()), data_of("pure torque, float, default query", 0));
-  EXPECT_EQ(hex(stop({}).payload()), data_of("stop", 1));
-  EXPECT_EQ(hex(query({}).payload()), data_of("query", 0));
+  const Query all{.motion = true, .supply = true};
+  EXPECT_EQ(hex(stop({}, all).payload()), data_of("stop", 1));
+  EXPECT_EQ(hex(ask({}, all).payload()), data_of("query", 0));
+}
+
+/// By hand from the register table: mode 10, position NaN and velocity 0, torque, no gains, maximum torque, watchdog, no
+/// integrator; then the questions.
+TEST(MoteusCodec, ATorqueIsAWholeCommandInEachFrame) {
+  const TorqueCommand command{.torque_Nm = 0.25, .maximum_torque_Nm = 1, .watchdog_s = 0.1};
+  const std::string sets =
+      "01000a" "02208000" "0d220000803e" "02230000" "0d250000803f" "0d27cdcccc3d" "012b00";
+  const std::string asks = "1100" "1d01" "110f";
+  const std::string padding = "50505050505050505050";
+  EXPECT_EQ(hex(torque_command({}, command, Query{})->payload()), sets + asks + padding);
+  EXPECT_EQ(hex(torque_command({}, command, Query{.tag = 3})->payload()),
+            sets + asks + "1170" "118202" "5050505050");
+  TorqueCommand unbounded = command;
+  unbounded.ignore_position_bounds = true;
+  EXPECT_EQ(hex(torque_command({}, unbounded, Query{.settings = true})->payload()),
+            sets + "012d01" + asks + "1d25" "1d27" "505050");
+}
+
+TEST(MoteusCodec, AReplySaysWhichQuestionItAnswers) {
+  EXPECT_EQ(decode(bytes("2100" "0a" "2d01" "0000803f")).reply.tag(), 0);
+  EXPECT_EQ(decode(bytes("217007")).reply.tag(), 1);
+  EXPECT_EQ(decode(bytes("21820205")).reply.tag(), 2);
+  EXPECT_EQ(decode(bytes("21700721820205")).reply.tag(), 3);
 }
 
 TEST(MoteusCodec, RefusesATorqueThatIsNoNumber) {
-  for (const double torque : {std::nan(""), double{INFINITY}, -double{INFINITY}, 1e39})
-    EXPECT_FALSE(
-        torque_command({}, {.torque_Nm = torque, .maximum_torque_Nm = 1, .watchdog_s = 0.1}));
+  const TorqueCommand good{.torque_Nm = 0, .maximum_torque_Nm = 1, .watchdog_s = 0.1};
+  TorqueCommand bad = good;
+  for (const double torque : {std::nan(""), double{INFINITY}, -double{INFINITY}, 1e39}) {
+    bad.torque_Nm = torque;
+    EXPECT_FALSE(torque_command({}, bad, {}));
+  }
   // NaN would be "no watchdog", "no limit".
-  EXPECT_FALSE(
-      torque_command({}, {.torque_Nm = 0, .maximum_torque_Nm = 1, .watchdog_s = std::nan("")}));
-  EXPECT_FALSE(
-      torque_command({}, {.torque_Nm = 0, .maximum_torque_Nm = std::nan(""), .watchdog_s = 0.1}));
+  bad = good;
+  bad.watchdog_s = std::nan("");
+  EXPECT_FALSE(torque_command({}, bad, {}));
+  bad = good;
+  bad.maximum_torque_Nm = std::nan("");
+  EXPECT_FALSE(torque_command({}, bad, {}));
 }
 
 TEST(MoteusCodec, DecodesEveryVector) {

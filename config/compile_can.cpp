@@ -1,0 +1,318 @@
+// Devices of CAN drives: what their drivers are told, and whether a bus has room for all that is on it.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "config/compilation.h"
+#include "config/describe.h"
+#include "config/number.h"
+
+namespace hapticd::config {
+namespace {
+
+using drivers::Timing;
+
+constexpr double kLongestWatchdog_s = 0.05;
+constexpr double kVelocityReserve = 2;  // near its own limit an ODrive weakens the torque
+
+std::optional<can::Protocol> protocol_of(Driver driver) {
+  switch (driver) {
+    case Driver::sim:
+      return {};
+    case Driver::odrive:
+      return can::Protocol::odrive;
+    case Driver::moteus:
+      return can::Protocol::moteus;
+    case Driver::cia402:
+      return can::Protocol::cia402;
+  }
+  return {};
+}
+
+struct Nodes {
+  int min = 0, max = 0;
+};
+Nodes nodes_of(can::Protocol protocol) {
+  switch (protocol) {
+    case can::Protocol::odrive:
+      return {0, 62};
+    case can::Protocol::moteus:
+      return {1, 126};
+    case can::Protocol::cia402:
+      return {1, 127};
+  }
+  return {};
+}
+
+Timing own_timing(can::Protocol protocol) {
+  switch (protocol) {
+    case can::Protocol::odrive:
+      return Timing::free_running;
+    case can::Protocol::moteus:
+      return Timing::reply_to_command;
+    case can::Protocol::cia402:
+      return Timing::in_phase;
+  }
+  return Timing::in_phase;
+}
+
+std::string word_of_timing(Timing timing) {
+  return std::string(word_of(static_cast<CanTiming>(timing)));
+}
+
+/// One device of CAN drives.
+struct CanPlace {
+  Compilation& compilation;
+  const DevicePlace& device;
+  const CanBus& bus;
+  can::Protocol protocol;
+
+  std::string path(const char* key) const { return device.path + ".can." + key; }
+  std::string drive_path(std::size_t axis, const char* key) const {
+    return device.axes[axis].path + ".can." + key;
+  }
+};
+
+Timing timing_of(const CanPlace& place) {
+  const Timing own = own_timing(place.protocol);
+  if (!place.bus.timing) return own;
+  const auto asked = static_cast<Timing>(*place.bus.timing);
+  if (asked == own || asked == Timing::in_phase) return asked;
+  place.compilation.refuse(
+      place.path("timing"),
+      "expected " + word_of_timing(own) +
+          (own == Timing::in_phase ? "" : " or " + word_of_timing(Timing::in_phase)) +
+          " for driver: " + std::string(word_of(place.device.device.driver)) + ", found " +
+          word_of_timing(asked));
+  return own;
+}
+
+/// Faults come first, then the drive's own watchdog, and that within what a hand may take.
+void check_watchdog(const CanPlace& place) {
+  const double period_s = place.compilation.spec.period_s;
+  const int ticks = place.device.guard.max_stale_ticks + 1;
+  if (place.bus.watchdog_s > ticks * period_s) return;
+  place.compilation.refuse(
+      place.path("watchdog_s"),
+      "expected more than " + std::to_string(ticks) + " ticks, " + format_number(ticks * period_s) +
+          " s: hapticd gives up after that many without a sample, and the drive must not be first; "
+          "found " +
+          format_number(place.bus.watchdog_s) + " s, which needs loop.rate_Hz above " +
+          format_number(ticks / place.bus.watchdog_s) + " (the longest watchdog, " +
+          format_number(kLongestWatchdog_s) + " s, needs " +
+          format_number(ticks / kLongestWatchdog_s) + ")");
+}
+
+can::DriveOptions drive_of(const CanPlace& place, std::size_t i) {
+  const Axis& axis = place.device.device.axes[i];
+  const AxisValues& values = place.device.axes[i];
+  const CanDrive& drive = *axis.can;
+  const double turns_per_unit = values.counts_per_unit / drive.counts_per_turn;
+  const Nodes nodes = nodes_of(place.protocol);
+  if (drive.node < nodes.min || drive.node > nodes.max) {
+    place.compilation.refuse(place.drive_path(i, "node"),
+                             "expected " + std::to_string(nodes.min) + " to " +
+                                 std::to_string(nodes.max) + " for driver: " +
+                                 std::string(word_of(place.device.device.driver)) + ", found " +
+                                 std::to_string(drive.node));
+  }
+  return {.axis = place.device.device.name + "." + axis.name,
+          .interface = drive.interface.value_or(place.bus.interface),
+          .node = static_cast<std::uint8_t>(drive.node),
+          .counts_per_unit = axis.encoder.reversed ? -values.counts_per_unit : values.counts_per_unit,
+          .counts_per_turn = drive.counts_per_turn,
+          .max_effort = values.max_effort,
+          .max_velocity_turns_s = drive.max_velocity_turns_s.value_or(
+              kVelocityReserve * values.max_velocity * turns_per_unit),
+          .max_current_A = drive.max_current_A.value_or(0)};
+}
+
+std::uint8_t host_node(const CanPlace& place) {
+  constexpr std::uint8_t kUsual = 127;
+  const auto id = static_cast<std::uint8_t>(place.bus.host_id);
+  return place.protocol == can::Protocol::cia402 && id == 0 ? kUsual : id;
+}
+
+void check_host_id(const CanPlace& place) {
+  if (place.protocol == can::Protocol::odrive) return;
+  const std::uint8_t id = host_node(place);
+  for (const Axis& axis : place.device.device.axes) {
+    if (axis.can->node != id) continue;
+    place.compilation.refuse(place.path("host_id"), "expected an id that no drive has, found " +
+                                                        std::to_string(id) + ", the node of axis '" +
+                                                        axis.name + "'");
+  }
+}
+
+can::DeviceOptions options_of(const CanPlace& place) {
+  can::DeviceOptions options{
+      .name = place.device.device.name,
+      .protocol = place.protocol,
+      .timing = timing_of(place),
+      .period_s = place.compilation.spec.period_s,
+      .rates = {.nominal_Hz = place.bus.bitrate_Hz, .data_Hz = place.bus.data_bitrate_Hz},
+      .turnaround_s = place.bus.turnaround_s,
+      .drive_delay_s = place.bus.drive_delay_s,
+      .watchdog_s = place.bus.watchdog_s,
+      .worst_sample_age_s = 0,
+      .drives = {},
+      .estimates_every_s = place.bus.estimates_every_s,
+      .heartbeat_every_s = place.bus.heartbeat_every_s,
+      .source = host_node(place),
+      .prefix = static_cast<std::uint16_t>(place.bus.prefix),
+      .ignore_position_bounds = place.bus.ignore_position_bounds,
+      .host_node = host_node(place)};
+  check_watchdog(place);
+  check_host_id(place);
+  for (std::size_t i = 0; i < place.device.axes.size(); ++i)
+    options.drives.push_back(drive_of(place, i));
+  if (options.timing == Timing::free_running && options.estimates_every_s > options.period_s * 1.0001) {
+    place.compilation.refuse(place.path("estimates_every_s"),
+                             "expected at most the period, " + format_number(options.period_s) +
+                                 " s: every tick needs a sample; found " +
+                                 format_number(options.estimates_every_s) + " s");
+  }
+  return options;
+}
+
+/// Keys of CAN where there is CAN, and only there.
+bool has_keys(Compilation& compilation, const DevicePlace& place, bool wanted) {
+  const std::string driver(word_of(place.device.driver));
+  const auto check = [&](const std::string& path, bool found) {
+    if (found == wanted) return true;
+    compilation.refuse(path, wanted ? "missing; expected here with driver: " + driver
+                                    : "driver: " + driver + " has no bus; remove this key");
+    return false;
+  };
+  bool good = check(place.path + ".can", place.device.can.has_value());
+  for (std::size_t i = 0; i < place.axes.size(); ++i)
+    good = check(place.axes[i].path + ".can", place.device.axes[i].can.has_value()) && good;
+  return good;
+}
+
+/// Two devices may share an interface if nobody takes the frames of the one for those of the other.
+void check_neighbours(Compilation& compilation, std::size_t first, std::size_t second) {
+  const can::DeviceOptions& a = *compilation.can[first];
+  const can::DeviceOptions& b = *compilation.can[second];
+  const std::string path = indexed("devices", second);
+  for (std::size_t i = 0; i < b.drives.size(); ++i) {
+    const can::DriveOptions& drive = b.drives[i];
+    const auto on_same = [&](const can::DriveOptions& other) {
+      return other.interface == drive.interface && (first != second || &other < &drive);
+    };
+    for (const can::DriveOptions& other : a.drives) {
+      if (!on_same(other)) continue;
+      const bool alone = a.protocol != b.protocol ||
+                         (a.protocol == can::Protocol::cia402 && first != second);
+      if (alone) {
+        compilation.refuse(path + ".can.interface",
+                           drive.interface + " has the drives of device '" + a.name + "' already, " +
+                               (a.protocol == b.protocol
+                                    ? "which send a SYNC of their own; make them one device"
+                                    : "which speak another protocol with the same ids") +
+                               ", or use another interface");
+        return;
+      }
+      if (other.node != drive.node) continue;
+      compilation.refuse(indexed(path + ".axes", i) + ".can.node",
+                         "node " + std::to_string(drive.node) + " on " + drive.interface +
+                             " is the drive of '" + other.axis + "' already");
+    }
+  }
+}
+
+/// The worst of the buses that a device is on.
+double worst(const Compilation& compilation, const can::DeviceOptions& device,
+             double can::BusLoad::*figure) {
+  double most_s = 0;
+  for (const can::BusLoad& bus : compilation.buses) {
+    if (std::ranges::find(device.drives, bus.interface, &can::DriveOptions::interface) !=
+        device.drives.end())
+      most_s = std::max(most_s, bus.*figure);
+  }
+  return most_s;
+}
+
+void check_load(Compilation& compilation, const can::BusLoad& bus, const std::string& path) {
+  if (bus.share <= can::kMostLoad) return;
+  compilation.refuse(
+      path, "expected at most 80 % of the time of " + bus.interface + ", found " +
+                format_number(std::round(1000 * bus.share) / 10) + " % at worst for " +
+                std::to_string(bus.axes) + " axes at " +
+                format_number(1 / compilation.spec.period_s) + " Hz; " +
+                std::to_string(bus.axes_that_fit) +
+                " of these axes fit: use more interfaces, or lower loop.rate_Hz");
+}
+
+/// How long the loop may wait for the answers of a tick.
+double answers_s(Compilation& compilation, const DevicePlace& place, const can::DeviceOptions& device) {
+  constexpr double kMost = 0.8;  // of the period: the rest is for the commands
+  if (device.timing != Timing::in_phase) return 0;
+  const double answers_s =
+      can::worst_answer_s(device, worst(compilation, device, &can::BusLoad::answers_s));
+  const double most_s = kMost * device.period_s;
+  if (answers_s <= most_s) return answers_s;
+  const Timing own = own_timing(device.protocol);
+  compilation.refuse(place.path + ".can.timing",
+                     "in phase, all answers must have come after 80 % of a period, " +
+                         format_number(most_s) + " s; at worst they take " +
+                         format_number(std::ceil(1e6 * answers_s) / 1e6) +
+                         " s: use more interfaces, or lower loop.rate_Hz" +
+                         (own == Timing::in_phase ? "" : ", or " + word_of_timing(own)));
+  return most_s;
+}
+
+void check_times(Compilation& compilation, const DevicePlace& place, can::DeviceOptions& device) {
+  const double busiest = worst(compilation, device, &can::BusLoad::busiest_s);
+  device.collect_s = compilation.collect_s;
+  device.worst_sample_age_s = can::worst_sample_age_s(device, busiest);
+  const double latency_s = can::worst_latency_s(device, busiest);
+  if (place.device.latency_s >= latency_s) return;
+  compilation.refuse(place.path + ".latency_s",
+                     "expected at least " + format_number(std::ceil(1e6 * latency_s) / 1e6) +
+                         " s: at worst a sample is " +
+                         format_number(std::ceil(1e6 * device.worst_sample_age_s) / 1e6) +
+                         " s old (" + word_of_timing(device.timing) + "), the bus takes " +
+                         format_number(std::ceil(1e6 * busiest) / 1e6) +
+                         " s, the drive can.drive_delay_s, the loop 50 us; found " +
+                         format_number(place.device.latency_s) + " s");
+}
+
+}  // namespace
+
+void compile_buses(Compilation& compilation, const std::vector<DevicePlace>& places) {
+  for (const DevicePlace& place : places) {
+    const auto protocol = protocol_of(place.device.driver);
+    const bool good = has_keys(compilation, place, protocol.has_value());
+    compilation.can.emplace_back();
+    if (!protocol || !good) continue;
+    compilation.can.back() = options_of({compilation, place, *place.device.can, *protocol});
+  }
+  std::vector<can::DeviceOptions> devices;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!compilation.can[i]) continue;
+    for (std::size_t j = 0; j <= i; ++j)
+      if (compilation.can[j]) check_neighbours(compilation, j, i);
+    devices.push_back(*compilation.can[i]);
+  }
+  compilation.buses = can::bus_loads(devices);
+  for (const can::BusLoad& bus : compilation.buses) {
+    const auto uses = [&](const DevicePlace& place) {
+      const auto& device = compilation.can[place.index];
+      return device && std::ranges::find(device->drives, bus.interface,
+                                         &can::DriveOptions::interface) != device->drives.end();
+    };
+    const auto last = std::find_if(places.rbegin(), places.rend(), uses);
+    check_load(compilation, bus, last->path + ".can.interface");
+  }
+  compilation.collect_s = compilation.spec.period_s / 2;
+  for (const DevicePlace& place : places) {
+    const auto& device = compilation.can[place.index];
+    if (device)
+      compilation.collect_s = std::max(compilation.collect_s, answers_s(compilation, place, *device));
+  }
+  for (const DevicePlace& place : places)
+    if (compilation.can[place.index]) check_times(compilation, place, *compilation.can[place.index]);
+}
+
+}  // namespace hapticd::config

@@ -1,0 +1,145 @@
+#include "drivers/can/budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::can {
+namespace {
+
+using drivers::Timing;
+
+/// A frame and how often it comes.
+struct Use {
+  double s = 0;
+  double every_s = 0;
+  bool command = false;  ///< goes out after the answers have come
+};
+
+/// What one drive has on the bus, and what all drives of a device share.
+struct Uses {
+  std::vector<Use> axis{}, shared{};
+};
+
+double classic_s(const DeviceOptions& device, std::size_t size) {
+  return worst_classic_bits(size, false) / device.rates.nominal_Hz;
+}
+
+Uses odrive_uses(const DeviceOptions& device) {
+  const double tick = device.period_s;
+  Uses uses{.axis = {{classic_s(device, 4), tick, true},  // torque
+                     {classic_s(device, 8), device.heartbeat_every_s}}};
+  if (device.timing == Timing::in_phase) {
+    uses.axis.push_back({classic_s(device, 0), tick});
+    uses.axis.push_back({classic_s(device, 8), tick});
+  } else {
+    uses.axis.push_back({classic_s(device, 8), device.estimates_every_s});
+  }
+  return uses;
+}
+
+Uses moteus_uses(const DeviceOptions& device) {
+  const auto s = [&](std::size_t size) { return worst_fd_s(size, true, device.rates); };
+  constexpr std::size_t kCommand = 48, kQuestion = 12, kReply = 24;
+  Uses uses{.axis = {{s(kCommand), device.period_s, true}, {s(kReply), device.period_s}}};
+  if (device.timing == Timing::in_phase) uses.axis.push_back({s(kQuestion), device.period_s});
+  return uses;
+}
+
+Uses cia402_uses(const DeviceOptions& device) {
+  const double tick = device.period_s;
+  return {.axis = {{classic_s(device, 4), tick, true},
+                   {classic_s(device, 8), tick},
+                   {classic_s(device, 1), device.heartbeat_every_s}},
+          .shared = {{classic_s(device, 0), tick},
+                     {classic_s(device, 1), std::max(tick, device.watchdog_s / 3)}}};
+}
+
+Uses uses_of(const DeviceOptions& device) {
+  switch (device.protocol) {
+    case Protocol::odrive:
+      return odrive_uses(device);
+    case Protocol::moteus:
+      return moteus_uses(device);
+    case Protocol::cia402:
+      return cia402_uses(device);
+  }
+  return {};
+}
+
+double share_of(const std::vector<Use>& uses) {
+  double share = 0;
+  for (const Use& use : uses) share += use.s / use.every_s;
+  return share;
+}
+double sum_of(const std::vector<Use>& uses, bool with_commands) {
+  double sum = 0;
+  for (const Use& use : uses) sum += use.command && !with_commands ? 0 : use.s;
+  return sum;
+}
+
+std::size_t axes_on(const DeviceOptions& device, const std::string& interface) {
+  return static_cast<std::size_t>(
+      std::ranges::count(device.drives, interface, &DriveOptions::interface));
+}
+
+BusLoad load_of(const std::vector<DeviceOptions>& devices, const std::string& interface) {
+  BusLoad load{.interface = interface};
+  double share_of_axis = 0, shared = 0;
+  for (const DeviceOptions& device : devices) {
+    const std::size_t axes = axes_on(device, interface);
+    if (axes == 0) continue;
+    const Uses uses = uses_of(device);
+    const auto count = static_cast<double>(axes);
+    if (load.axes == 0) share_of_axis = share_of(uses.axis);
+    load.axes += axes;
+    shared += share_of(uses.shared);
+    load.share += count * share_of(uses.axis) + share_of(uses.shared);
+    load.busiest_s += count * sum_of(uses.axis, true) + sum_of(uses.shared, true);
+    load.answers_s += count * sum_of(uses.axis, false) + sum_of(uses.shared, false);
+  }
+  load.axes_that_fit =
+      static_cast<std::size_t>(std::max(0.0, std::floor((kMostLoad - shared) / share_of_axis)));
+  return load;
+}
+
+/// From collect to the frames of the command.
+constexpr double kHost_s = 50e-6;
+/// That the loop may wake late, and its questions go out, before an answer counts as late.
+constexpr double kWake_s = 50e-6;
+/// Clocks of drives run off by no more.
+constexpr double kDrift = 1e-3;
+
+}  // namespace
+
+std::vector<BusLoad> bus_loads(const std::vector<DeviceOptions>& devices) {
+  std::vector<BusLoad> loads;
+  for (const DeviceOptions& device : devices) {
+    for (const DriveOptions& drive : device.drives) {
+      if (std::ranges::find(loads, drive.interface, &BusLoad::interface) == loads.end())
+        loads.push_back(load_of(devices, drive.interface));
+    }
+  }
+  return loads;
+}
+
+double worst_answer_s(const DeviceOptions& device, double answers_s) {
+  return kWake_s + device.turnaround_s + answers_s;
+}
+
+double worst_sample_age_s(const DeviceOptions& device, double busiest_s) {
+  switch (device.timing) {
+    case Timing::in_phase:  // of one that came first, when the last one comes at the deadline
+      return device.collect_s;
+    case Timing::free_running:
+      return device.estimates_every_s * (1 + kDrift) + busiest_s;
+    case Timing::reply_to_command:
+      return device.period_s;
+  }
+  return 0;
+}
+
+double worst_latency_s(const DeviceOptions& device, double busiest_s) {
+  return worst_sample_age_s(device, busiest_s) + kHost_s + busiest_s + device.drive_delay_s;
+}
+
+}  // namespace hapticd::can

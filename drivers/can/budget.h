@@ -1,0 +1,33 @@
+// Whether a bus has room for what its devices send in every tick, and how old a sample and a force may get on it. At
+// worst: every frame with the most stuff bits, and waiting for all others of its tick.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "drivers/can/options.h"
+
+namespace hapticd::can {
+
+/// Of the period: more is refused.
+inline constexpr double kMostLoad = 0.8;
+
+struct BusLoad {
+  std::string interface {};
+  double share = 0;      ///< of the bus' time, on average over the rarer frames
+  double busiest_s = 0;  ///< of one tick that has every frame
+  double answers_s = 0;  ///< of its questions, answers and what drives send beside them
+  std::size_t axes = 0;
+  std::size_t axes_that_fit = 0;  ///< of the kind of its first device, within kMostLoad
+};
+/// By interface, over all devices.
+std::vector<BusLoad> bus_loads(const std::vector<DeviceOptions>& devices);
+
+/// At collect [s], on a bus whose busiest tick takes so long.
+double worst_sample_age_s(const DeviceOptions& device, double busiest_s);
+/// From when an axis is measured until the force acts that rests on it.
+double worst_latency_s(const DeviceOptions& device, double busiest_s);
+/// In phase: from the start of a tick until the last answer.
+double worst_answer_s(const DeviceOptions& device, double answers_s);
+
+}  // namespace hapticd::can

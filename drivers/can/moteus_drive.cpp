@@ -1,0 +1,175 @@
+#include "drivers/can/moteus_drive.h"
+
+#include <cmath>
+
+namespace hapticd::can {
+namespace {
+
+using moteus::Mode;
+
+constexpr int kModePosition = static_cast<int>(Mode::position);
+/// From stopped to running: the servo measures its current offsets first (modes 2, 3, 4).
+constexpr std::int64_t kStart_ns = 2'000'000'000;
+
+bool is(const std::optional<double>& value, Mode mode) noexcept {
+  return value && *value == static_cast<double>(mode);
+}
+
+/// What the wire carries comes back the same, but for rounding to a float.
+bool as_asked(const std::optional<double>& found, double asked) noexcept {
+  return found && std::abs(*found - asked) <= 1e-6 * std::abs(asked);
+}
+
+}  // namespace
+
+std::vector<Filter> MoteusDrive::filters() const {
+  const std::uint32_t prefix = static_cast<std::uint32_t>(address_.prefix) << 16;
+  const std::uint32_t reply = prefix | static_cast<std::uint32_t>(address_.servo) << 8 | address_.source;
+  const std::uint32_t command = prefix | address_.servo;
+  std::vector<Filter> filters{{.id = reply, .mask = 0x1fffffff, .extended = reply >= 0x800},
+                              // commands of any other host
+                              {.id = command | 0x8000, .mask = 0x1fff80ff, .extended = true}};
+  if (prefix == 0) filters.push_back({.id = command, .mask = 0x0ff, .extended = false});
+  return filters;
+}
+
+Result<std::string> MoteusDrive::connect(Conversation& conversation) {
+  constexpr int kTries = 3;
+  constexpr double kAnswer_s = 0.2;
+  conversation.send(moteus::stop(address_, std::nullopt));
+  for (int i = 0; i < kTries; ++i) {
+    conversation.send(moteus::ask_identity(address_));
+    const std::int64_t until_ns = conversation.now_ns() + std::llround(kAnswer_s * 1e9);
+    while (conversation.now_ns() < until_ns) {
+      const auto frame = conversation.next(kAnswer_s);
+      if (!frame) break;
+      if (!moteus::is_reply(*frame, address_)) continue;
+      const moteus::Reply reply = moteus::decode(frame->payload()).reply;
+      if (!reply.register_map_version) continue;
+      if (*reply.register_map_version != moteus::kRegisterMapVersion) {
+        return hapticd::fail(ExitCode::unavailable,
+                             place_of(options_) + ": this servo has register map " +
+                                 std::to_string(*reply.register_map_version) + ", expected " +
+                                 std::to_string(moteus::kRegisterMapVersion) +
+                                 ": update its firmware");
+      }
+      knows_position_ = true;
+      go(Stage::off);
+      return "moteus, register map " + std::to_string(*reply.register_map_version);
+    }
+  }
+  return hapticd::fail(ExitCode::unavailable,
+                       place_of(options_) +
+                           ": no moteus answers; check its power, the cable, its id (id.id), "
+                           "can.prefix, and both bit rates of the interface");
+}
+
+// -- loop
+
+moteus::Query MoteusDrive::next_query() noexcept {
+  tag_ = (tag_ + 1) & 3;
+  return {.settings = stage_ == Stage::starting, .tag = tag_};
+}
+
+void MoteusDrive::query(Outbox& outbox) noexcept {
+  if (in_phase()) outbox.add(moteus::ask(address_, next_query()));
+}
+
+std::optional<moteus::Query> MoteusDrive::query_with_command() noexcept {
+  if (in_phase()) return std::nullopt;
+  return next_query();
+}
+
+/// To this servo, whether it is to answer or not.
+bool MoteusDrive::of_another_master(const Frame& frame) const noexcept {
+  return (frame.id & 0x7f) == address_.servo && frame.id >> 16 == address_.prefix;
+}
+
+Heard MoteusDrive::take(const Frame& frame, std::int64_t stamp_ns) noexcept {
+  if (frame.error || frame.remote) return Heard::nothing;
+  if (!moteus::is_reply(frame, address_))
+    return of_another_master(frame) ? Heard::other_master : Heard::nothing;
+  const moteus::Decoded decoded = moteus::decode(frame.payload());
+  if (decoded.status == moteus::Status::error_subframe)
+    fail("the servo refused a register", {}, "update its firmware");
+  if (decoded.status != moteus::Status::ok) return Heard::something;
+  const moteus::Reply& reply = decoded.reply;
+  if (reply.tag() != tag_) return Heard::something;  // answers an older question
+  hear(reply);
+  if (!reply.position || !std::isfinite(*reply.position)) return Heard::something;
+  measured(options_.counts_per_turn * *reply.position, stamp_ns);
+  return Heard::sample;
+}
+
+void MoteusDrive::hear(const moteus::Reply& reply) noexcept {
+  if (!reply.mode || !reply.fault) return;
+  mode_ = static_cast<int>(*reply.mode);
+  const int code = static_cast<int>(*reply.fault);
+  limits_ = moteus::is_limit(code) ? static_cast<std::uint16_t>(1u << (code - 96)) : 0;
+  faults_ = is(reply.mode, Mode::fault) ? static_cast<std::uint32_t>(code) : 0;
+  if (stage_ == Stage::off || stage_ == Stage::stopping) return;
+  if (is(reply.mode, Mode::fault)) return fail("the servo reports a fault", moteus::fault_word(code));
+  if (is(reply.mode, Mode::timeout)) return fail("the servo's watchdog expired");
+  if (stage_ == Stage::starting) return hear_starting(reply);
+  if (mode_ != kModePosition)
+    fail("the servo left its torque mode: it restarted, or somebody stopped it");
+}
+
+/// Running, and with the settings that were asked for.
+void MoteusDrive::hear_starting(const moteus::Reply& reply) noexcept {
+  if (mode_ != kModePosition || !reply.maximum_torque || !reply.watchdog) return;
+  if (!as_asked(reply.watchdog, device_.watchdog_s))
+    return fail("the servo has another watchdog time than it was told");
+  if (!as_asked(reply.maximum_torque, max_torque_Nm()))
+    return fail("the servo has another maximum torque than it was told");
+  go(Stage::armed);
+}
+
+void MoteusDrive::go(Stage stage) noexcept {
+  stage_ = stage;
+  since_ns_ = now_ns_;
+  armed_ = stage == Stage::armed;
+}
+
+void MoteusDrive::command(double torque_Nm, Outbox& outbox) noexcept {
+  switch (stage_) {
+    case Stage::off:
+      return;
+    case Stage::stopping:  // first of all: what may still be queued then meets a servo that is off
+      if (mode_ == static_cast<int>(Mode::stopped) && now_ns_ > since_ns_) {
+        go(Stage::starting);
+        return torque(0, outbox);
+      }
+      outbox.add(moteus::stop(address_, query_with_command()));
+      break;
+    case Stage::starting:
+      torque(0, outbox);
+      break;
+    case Stage::armed:
+      return torque(torque_Nm, outbox);
+  }
+  if (now_ns_ - since_ns_ > kStart_ns)
+    fail("the servo did not start within two seconds", {}, "is it calibrated?");
+}
+
+void MoteusDrive::torque(double torque_Nm, Outbox& outbox) noexcept {
+  const auto frame = moteus::torque_command(address_,
+                                            {.torque_Nm = torque_Nm,
+                                             .maximum_torque_Nm = max_torque_Nm(),
+                                             .watchdog_s = device_.watchdog_s,
+                                             .ignore_position_bounds = device_.ignore_position_bounds},
+                                            query_with_command());
+  outbox.add(frame);
+  carried_Nm_ = frame ? static_cast<double>(static_cast<float>(torque_Nm)) : 0;
+}
+
+void MoteusDrive::stop(bool must, Outbox& outbox) noexcept {
+  stage_ = Stage::off;
+  if (must) {
+    outbox.add(moteus::stop(address_, query_with_command()));
+  } else if (!in_phase()) {
+    outbox.add(moteus::ask(address_, next_query()));
+  }
+}
+
+}  // namespace hapticd::can

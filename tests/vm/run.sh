@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it. Prints one line a check.
+# Exit: 0 all passed, 1 not so, 64 usage, 69 the kernel cannot be downloaded, 77 skipped: something is not installed.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+usage() {
+  cat << 'END'
+usage: tests/vm/run.sh [--suite a] [--build DIR] [--only TEXT] [PROGRAM...]
+  --suite a     the kernel's interfaces: the only suite
+  --build DIR   where hapticd and hapticctl were built (build)
+  --only TEXT   only the scripts of tests/vm/guest with TEXT in their name
+  PROGRAM       further programs for the guest, into its /usr/bin
+REQUIRE_VM=1 makes a failure of what would be a skip.
+END
+}
+
+build=build
+only=
+programs=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --suite | --build | --only)
+      [ $# -ge 2 ] || { usage >&2 && exit 64; }
+      case $1 in
+        --suite) [ "$2" = a ] || { echo "tests/vm/run.sh: no suite $2" >&2 && exit 64; } ;;
+        --build) build=$2 ;;
+        --only) only=$2 ;;
+      esac
+      shift
+      ;;
+    --help) usage && exit 0 ;;
+    -*) usage >&2 && exit 64 ;;
+    *) programs+=("$1") ;;
+  esac
+  shift
+done
+
+missing=()
+for tool in qemu-system-x86_64 busybox cpio modprobe depmod ip tc candump cansend cyclictest python3; do
+  PATH=$PATH:/sbin:/usr/sbin command -v "$tool" > /dev/null || missing+=("$tool")
+done
+if [ "${#missing[@]}" -gt 0 ]; then
+  echo "SKIPPED: vm: not installed: ${missing[*]}"
+  [ "${REQUIRE_VM:-}" != 1 ] || exit 1
+  exit 77
+fi
+
+mkdir -p build/vm
+started=$SECONDS
+kernel_directory=$(tests/vm/prepare.sh)
+prepared=$SECONDS
+tests/vm/pack.sh "$kernel_directory" build/vm/initramfs "$build/daemon/hapticd" "$build/daemon/hapticctl" "${programs[@]}"
+packed=$SECONDS
+
+# passed <QEMU's exit code> <serial log>
+passed() {
+  [ "$1" -eq 33 ] && ! grep -aq '^FAILED ' "$2" && tail -n 1 "$2" | grep -aqE '^hapticd-vm: passed, [1-9][0-9]* checks'
+}
+# must_not_pass <code> <line>...: a verdict that cannot be bad would be none.
+must_not_pass() {
+  printf '%s\n' "${@:2}" > build/vm/bad.log
+  ! passed "$1" build/vm/bad.log || { echo "vm: FAILED: took this for a pass: $*" && exit 1; }
+}
+good='hapticd-vm: passed, 2 checks'
+must_not_pass 0 "$good"                    # panic, power-off
+must_not_pass 124 "$good"                  # timeout
+must_not_pass 35 "$good"                   # the guest's other word
+must_not_pass 33 'ok a' 'ok b'             # no last line
+must_not_pass 33 'FAILED a' "$good"
+must_not_pass 33 "$good" 'and more'
+must_not_pass 33 'hapticd-vm: passed, 0 checks'
+
+# Why each option is there: README.md. Never KVM, not even as a choice.
+code=0
+timeout 300 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -icount shift=1,sleep=off \
+  -rtc base=2026-01-01T00:00:00,clock=vm -seed 1 -nographic -no-reboot -nodefaults -serial stdio -monitor none \
+  -device isa-debug-exit,iobase=0xf4,iosize=0x04 \
+  -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb \
+  -kernel "$kernel_directory/vmlinux" -initrd build/vm/initramfs \
+  -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr${only:+ vm_only=$only}" \
+  < /dev/null > build/vm/serial.log 2>&1 || code=$?
+
+tr -d '\r' < build/vm/serial.log | grep -aE '^(ok|FAILED|hapticd-vm:) ' || true
+took="$((prepared - started)) s prepare, $((packed - prepared)) s pack, $((SECONDS - packed)) s run"
+if passed "$code" build/vm/serial.log; then
+  echo "vm: passed; $took"
+  exit 0
+fi
+case $code in
+  35) why="checks failed" ;;
+  124) why="not done after 300 s" ;;
+  33) why="the exit code and the lines contradict each other" ;;
+  *) why="QEMU ended with $code: a panic, a power-off or an option that it does not know" ;;
+esac
+# What the checks told of their failures, and what the kernel said.
+grep -avE '^ok ' build/vm/serial.log | tail -n 60 >&2 || true
+echo "vm: FAILED: $why; $took; all that was said: build/vm/serial.log"
+exit 1
