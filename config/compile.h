@@ -59,7 +59,7 @@ struct Compiled {
   Document document;
   std::unique_ptr<build::Program> program;
   std::vector<sim::DeviceOptions> simulated;
-  std::optional<sim::SharedHandOptions> shared_hand;  ///< of the simulated devices
+  std::optional<sim::SharedHandOptions> shared_hand;   ///< of the simulated devices
   std::vector<std::optional<can::DeviceOptions>> can;  ///< `can[i]` belongs to device i
   std::vector<can::BusLoad> buses;
   double collect_s = 0;  ///< the loop waits so long for samples, from its tick's start

@@ -56,6 +56,11 @@ Timing own_timing(can::Protocol protocol) {
   return Timing::in_phase;
 }
 
+/// In whole microseconds, rounded up.
+std::string up_to_us(double seconds) {
+  return format_number(std::ceil(1e6 * seconds - 1e-3) / 1e6) + " s";
+}
+
 std::string word_of_timing(Timing timing) {
   return std::string(word_of(static_cast<CanTiming>(timing)));
 }
@@ -110,21 +115,22 @@ can::DriveOptions drive_of(const CanPlace& place, std::size_t i) {
   const double turns_per_unit = values.counts_per_unit / drive.counts_per_turn;
   const Nodes nodes = nodes_of(place.protocol);
   if (drive.node < nodes.min || drive.node > nodes.max) {
-    place.compilation.refuse(place.drive_path(i, "node"),
-                             "expected " + std::to_string(nodes.min) + " to " +
-                                 std::to_string(nodes.max) + " for driver: " +
-                                 std::string(word_of(place.device.device.driver)) + ", found " +
-                                 std::to_string(drive.node));
+    place.compilation.refuse(
+        place.drive_path(i, "node"),
+        "expected " + std::to_string(nodes.min) + " to " + std::to_string(nodes.max) +
+            " for driver: " + std::string(word_of(place.device.device.driver)) + ", found " +
+            std::to_string(drive.node));
   }
-  return {.axis = place.device.device.name + "." + axis.name,
-          .interface = drive.interface.value_or(place.bus.interface),
-          .node = static_cast<std::uint8_t>(drive.node),
-          .counts_per_unit = axis.encoder.reversed ? -values.counts_per_unit : values.counts_per_unit,
-          .counts_per_turn = drive.counts_per_turn,
-          .max_effort = values.max_effort,
-          .max_velocity_turns_s = drive.max_velocity_turns_s.value_or(
-              kVelocityReserve * values.max_velocity * turns_per_unit),
-          .max_current_A = drive.max_current_A.value_or(0)};
+  return {
+      .axis = place.device.device.name + "." + axis.name,
+      .interface = drive.interface.value_or(place.bus.interface),
+      .node = static_cast<std::uint8_t>(drive.node),
+      .counts_per_unit = axis.encoder.reversed ? -values.counts_per_unit : values.counts_per_unit,
+      .counts_per_turn = drive.counts_per_turn,
+      .max_effort = values.max_effort,
+      .max_velocity_turns_s = drive.max_velocity_turns_s.value_or(
+          kVelocityReserve * values.max_velocity * turns_per_unit),
+      .max_current_A = drive.max_current_A.value_or(0)};
 }
 
 std::uint8_t host_node(const CanPlace& place) {
@@ -139,8 +145,8 @@ void check_host_id(const CanPlace& place) {
   for (const Axis& axis : place.device.device.axes) {
     if (axis.can->node != id) continue;
     place.compilation.refuse(place.path("host_id"), "expected an id that no drive has, found " +
-                                                        std::to_string(id) + ", the node of axis '" +
-                                                        axis.name + "'");
+                                                        std::to_string(id) +
+                                                        ", the node of axis '" + axis.name + "'");
   }
 }
 
@@ -166,7 +172,8 @@ can::DeviceOptions options_of(const CanPlace& place) {
   check_host_id(place);
   for (std::size_t i = 0; i < place.device.axes.size(); ++i)
     options.drives.push_back(drive_of(place, i));
-  if (options.timing == Timing::free_running && options.estimates_every_s > options.period_s * 1.0001) {
+  if (options.timing == Timing::free_running &&
+      options.estimates_every_s > options.period_s * 1.0001) {
     place.compilation.refuse(place.path("estimates_every_s"),
                              "expected at most the period, " + format_number(options.period_s) +
                                  " s: every tick needs a sample; found " +
@@ -202,15 +209,15 @@ void check_neighbours(Compilation& compilation, std::size_t first, std::size_t s
     };
     for (const can::DriveOptions& other : a.drives) {
       if (!on_same(other)) continue;
-      const bool alone = a.protocol != b.protocol ||
-                         (a.protocol == can::Protocol::cia402 && first != second);
+      const bool alone =
+          a.protocol != b.protocol || (a.protocol == can::Protocol::cia402 && first != second);
       if (alone) {
-        compilation.refuse(path + ".can.interface",
-                           drive.interface + " has the drives of device '" + a.name + "' already, " +
-                               (a.protocol == b.protocol
-                                    ? "which send a SYNC of their own; make them one device"
-                                    : "which speak another protocol with the same ids") +
-                               ", or use another interface");
+        compilation.refuse(
+            path + ".can.interface",
+            drive.interface + " has the drives of device '" + a.name + "' already, " +
+                (a.protocol == b.protocol ? "which send a SYNC of their own; make them one device"
+                                          : "which speak another protocol with the same ids") +
+                ", or use another interface");
         return;
       }
       if (other.node != drive.node) continue;
@@ -221,60 +228,45 @@ void check_neighbours(Compilation& compilation, std::size_t first, std::size_t s
   }
 }
 
-/// The worst of the buses that a device is on.
-double worst(const Compilation& compilation, const can::DeviceOptions& device,
-             double can::BusLoad::*figure) {
-  double most_s = 0;
-  for (const can::BusLoad& bus : compilation.buses) {
-    if (std::ranges::find(device.drives, bus.interface, &can::DriveOptions::interface) !=
-        device.drives.end())
-      most_s = std::max(most_s, bus.*figure);
-  }
-  return most_s;
-}
-
 void check_load(Compilation& compilation, const can::BusLoad& bus, const std::string& path) {
   if (bus.share <= can::kMostLoad) return;
-  compilation.refuse(
-      path, "expected at most 80 % of the time of " + bus.interface + ", found " +
-                format_number(std::round(1000 * bus.share) / 10) + " % at worst for " +
-                std::to_string(bus.axes) + " axes at " +
-                format_number(1 / compilation.spec.period_s) + " Hz; " +
-                std::to_string(bus.axes_that_fit) +
-                " of these axes fit: use more interfaces, or lower loop.rate_Hz");
+  compilation.refuse(path, "expected at most 80 % of the time of " + bus.interface + ", found " +
+                               format_number(std::round(1000 * bus.share) / 10) +
+                               " % at worst for " + std::to_string(bus.axes) + " axes at " +
+                               format_number(1 / compilation.spec.period_s) + " Hz; " +
+                               std::to_string(bus.axes_that_fit) +
+                               " of these axes fit: use more interfaces, or lower loop.rate_Hz");
 }
 
 /// How long the loop may wait for the answers of a tick.
-double answers_s(Compilation& compilation, const DevicePlace& place, const can::DeviceOptions& device) {
+double answers_s(Compilation& compilation, const DevicePlace& place,
+                 const can::DeviceOptions& device) {
   constexpr double kMost = 0.8;  // of the period: the rest is for the commands
   if (device.timing != Timing::in_phase) return 0;
-  const double answers_s =
-      can::worst_answer_s(device, worst(compilation, device, &can::BusLoad::answers_s));
+  const double answers_s = can::worst_answer_s(device, can::worst_of(device, compilation.buses));
   const double most_s = kMost * device.period_s;
   if (answers_s <= most_s) return answers_s;
   const Timing own = own_timing(device.protocol);
   compilation.refuse(place.path + ".can.timing",
                      "in phase, all answers must have come after 80 % of a period, " +
-                         format_number(most_s) + " s; at worst they take " +
-                         format_number(std::ceil(1e6 * answers_s) / 1e6) +
-                         " s: use more interfaces, or lower loop.rate_Hz" +
+                         format_number(most_s) + " s; at worst they take " + up_to_us(answers_s) +
+                         ": use more interfaces, or lower loop.rate_Hz" +
                          (own == Timing::in_phase ? "" : ", or " + word_of_timing(own)));
   return most_s;
 }
 
 void check_times(Compilation& compilation, const DevicePlace& place, can::DeviceOptions& device) {
-  const double busiest = worst(compilation, device, &can::BusLoad::busiest_s);
+  const can::BusLoad bus = can::worst_of(device, compilation.buses);
   device.collect_s = compilation.collect_s;
-  device.worst_sample_age_s = can::worst_sample_age_s(device, busiest);
-  const double latency_s = can::worst_latency_s(device, busiest);
+  device.worst_sample_age_s = can::worst_sample_age_s(device, bus);
+  const double latency_s = can::worst_latency_s(device, bus);
   if (place.device.latency_s >= latency_s) return;
   compilation.refuse(place.path + ".latency_s",
-                     "expected at least " + format_number(std::ceil(1e6 * latency_s) / 1e6) +
-                         " s: at worst a sample is " +
-                         format_number(std::ceil(1e6 * device.worst_sample_age_s) / 1e6) +
-                         " s old (" + word_of_timing(device.timing) + "), the bus takes " +
-                         format_number(std::ceil(1e6 * busiest) / 1e6) +
-                         " s, the drive can.drive_delay_s, the loop 50 us; found " +
+                     "expected at least " + up_to_us(latency_s) + ": at worst a sample is " +
+                         up_to_us(device.worst_sample_age_s) + " old (" +
+                         word_of_timing(device.timing) +
+                         "); the frames of the command, can.drive_delay_s and 50 us for the loop "
+                         "come on top; found " +
                          format_number(place.device.latency_s) + " s");
 }
 
@@ -309,10 +301,12 @@ void compile_buses(Compilation& compilation, const std::vector<DevicePlace>& pla
   for (const DevicePlace& place : places) {
     const auto& device = compilation.can[place.index];
     if (device)
-      compilation.collect_s = std::max(compilation.collect_s, answers_s(compilation, place, *device));
+      compilation.collect_s =
+          std::max(compilation.collect_s, answers_s(compilation, place, *device));
   }
   for (const DevicePlace& place : places)
-    if (compilation.can[place.index]) check_times(compilation, place, *compilation.can[place.index]);
+    if (compilation.can[place.index])
+      check_times(compilation, place, *compilation.can[place.index]);
 }
 
 }  // namespace hapticd::config

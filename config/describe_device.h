@@ -275,7 +275,8 @@ void describe(V& v, CanBus& s) {
              {.about = "of hapticd on the bus: moteus 0 to 127; cia402 1 to 127, 0 stands for 127",
               .min = 0,
               .max = 127});
-  v.optional("prefix", s.prefix, {.about = "moteus: can.prefix of the servos", .min = 0, .max = 8191});
+  v.optional("prefix", s.prefix,
+             {.about = "moteus: can.prefix of the servos", .min = 0, .max = 8191});
   v.optional("ignore_position_bounds", s.ignore_position_bounds,
              {.about = "moteus: torque beyond servopos.position_min and position_max too, which "
                        "are very narrow as delivered"});

@@ -7,6 +7,7 @@
 #include "config/effective_guard.h"
 #include "config/number.h"
 #include "config/print_axis.h"
+#include "config/print_can.h"
 #include "config/print_world.h"
 
 namespace hapticd::config {
@@ -95,7 +96,8 @@ std::string device_text(const Compiled& compiled, std::size_t index) {
         cartesian ? " along " + std::string(word_of(cartesian->directions[i])) : "";
     text += axis_text(plan, plan.devices[index].first_axis + i, device.axes[i], along);
   }
-  return text + guard_text(effective_guard(config.guard, device), rotary) + inputs_text(device) +
+  return text + drives_text(compiled, index) +
+         guard_text(effective_guard(config.guard, device), rotary) + inputs_text(device) +
          assumed_text(compiled.assumed[index], rotary);
 }
 
@@ -117,6 +119,7 @@ std::string describe_plan(const Compiled& compiled) {
       "config " + compiled.document.path + ", digest " + compiled.document.digest + "\n";
   text += loop_text(config);
   for (std::size_t i = 0; i < config.devices.size(); ++i) text += device_text(compiled, i);
+  text += buses_text(compiled);
   return text + world_text(compiled) + files_text(config);
 }
 

@@ -150,6 +150,23 @@ Json loop_json(const Config& config) {
 
 }  // namespace
 
+namespace {
+
+Json buses_json(const Compiled& compiled) {
+  Json buses = Json::array();
+  for (const can::BusLoad& bus : compiled.buses) {
+    buses.push_back({{"interface", bus.interface},
+                     {"load", bus.share},
+                     {"most_load", can::kMostLoad},
+                     {"busiest_tick_s", bus.busiest_s},
+                     {"axes", bus.axes},
+                     {"axes_that_fit", bus.axes_that_fit}});
+  }
+  return buses;
+}
+
+}  // namespace
+
 std::string plan_json(const Compiled& compiled) {
   const Document& document = compiled.document;
   const Config& config = document.config;
@@ -167,6 +184,7 @@ std::string plan_json(const Compiled& compiled) {
                      {"start", word_of(config.start.enable)},
                      {"require", word_of(config.stability.require)},
                      {"devices", devices},
+                     {"buses", buses_json(compiled)},
                      {"coupling", json_of(config.coupling)},
                      {"scene", scene},
                      {"socket", config.control.socket},

@@ -137,10 +137,11 @@ struct Travel {
 /// The drive of an axis on a CAN bus.
 struct CanDrive {
   int node = 0;
-  double counts_per_turn = 0;                    ///< of the motor's encoder
-  std::optional<std::string> interface {};       ///< default: the device's
-  std::optional<double> max_current_A{};         ///< odrive; default: as set in the drive
-  std::optional<double> max_velocity_turns_s{};  ///< odrive, with max_current_A; default: twice the guard's
+  double counts_per_turn = 0;               ///< of the motor's encoder
+  std::optional<std::string> interface {};  ///< default: the device's
+  std::optional<double> max_current_A{};    ///< odrive; default: as set in the drive
+  std::optional<double>
+      max_velocity_turns_s{};  ///< odrive, with max_current_A; default: twice the guard's
   bool operator==(const CanDrive&) const = default;
 };
 

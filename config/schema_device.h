@@ -133,7 +133,7 @@ struct CanBus {
 struct Device {
   std::string name;
   Driver driver = Driver::sim;
-  std::optional<Sim> sim;    ///< of a simulated or emulated device
+  std::optional<Sim> sim;     ///< of a simulated or emulated device
   std::optional<CanBus> can;  ///< with a driver for CAN
   Kinematics kinematics;
   Pose pose;

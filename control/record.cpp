@@ -17,6 +17,8 @@ void put_axes(std::byte* slot, const RecordLayout& at, const State& state,
     std::memcpy(slot + at.raw.offset + 8 * i, &sample.raw, 8);
     std::memcpy(slot + at.age_ns.offset + 8 * i, &sample.age_ns, 8);
     std::memcpy(slot + at.delivered.offset + 8 * i, &input.delivered[i], 8);
+    std::memcpy(slot + at.drive_faults.offset + 4 * i, &sample.drive_faults, 4);
+    std::memcpy(slot + at.drive_limits.offset + 2 * i, &sample.drive_limits, 2);
     slot[at.freshness.offset + i] = static_cast<std::byte>(sample.freshness);
     slot[at.homed.offset + i] = static_cast<std::byte>(state.axes[i].homed);
   }
@@ -58,6 +60,8 @@ RecordLayout record_layout(const Plan& plan) noexcept {
     place(layout.*field.layout, field.named(plan) ? count : 0, 8);
   }
   place(layout.aux, devices, sizeof(Aux));
+  place(layout.drive_faults, axes, 4);
+  place(layout.drive_limits, axes, 2);
   place(layout.freshness, axes, 1);
   place(layout.homed, axes, 1);
   layout.bytes = static_cast<std::uint32_t>((offset + 7) / 8 * 8);

@@ -19,8 +19,10 @@ struct RecordLayout {
       force;                                                     ///< per coordinate
   RecordArray solve_error, injected, work, reserve, gain, fade;  ///< per device
   RecordArray aux;                                               ///< per device
-  RecordArray freshness, homed;                                  ///< per axis, one byte each
-  std::uint32_t bytes = 0;  ///< of a whole record, a multiple of 8
+  RecordArray drive_faults,
+      drive_limits;              ///< per axis, as its drive reports them: 4 and 2 bytes each
+  RecordArray freshness, homed;  ///< per axis, one byte each
+  std::uint32_t bytes = 0;       ///< of a whole record, a multiple of 8
   bool operator==(const RecordLayout&) const = default;
 };
 

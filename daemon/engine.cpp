@@ -30,7 +30,7 @@ TelemetryOptions telemetry_options(const config::Telemetry& telemetry) {
 std::size_t largest_record_bytes(const control::Plan& plan) {
   const std::size_t axes = plan.axes.size(), devices = plan.devices.size();
   std::size_t bytes =
-      sizeof(control::RecordHeader) + axes * (3 * sizeof(double) + 2) + devices * sizeof(Aux);
+      sizeof(control::RecordHeader) + axes * (3 * sizeof(double) + 8) + devices * sizeof(Aux);
   for (const control::RecordedField& field : control::kRecorded) {
     const std::size_t count = field.per == control::Per::axis     ? axes
                               : field.per == control::Per::device ? devices
@@ -46,8 +46,10 @@ bool same(const config::Telemetry& a, const config::Telemetry& b) {
 
 }  // namespace
 
-ServoOptions servo_options(const config::Loop& loop) {
+ServoOptions servo_options(const config::Compiled& compiled) {
+  const config::Loop& loop = compiled.document.config.loop;
   ServoOptions options;
+  options.collect_ns = std::llround(1e9 * compiled.collect_s);
   options.schedule.period_ns = std::llround(1e9 / loop.rate_Hz);
   options.schedule.max_gap_ticks = loop.max_gap_ticks;
   options.schedule.max_missed_per_s = loop.max_missed_per_s;
@@ -61,7 +63,7 @@ Engine::Engine(config::Compiled& compiled, TelemetryEvents events)
       telemetry_config_(compiled.document.config.telemetry),
       events_(std::move(events)),
       header_(header_of(*program_, compiled.document)),
-      servo_options_(servo_options(compiled.document.config.loop)),
+      servo_options_(servo_options(compiled)),
       devices_(make_devices(compiled)) {
   events_.record = [this](const std::byte* record) { live_.add(record); };
   const std::size_t slot_bytes = largest_record_bytes(program_->plan());
@@ -85,15 +87,10 @@ Result<void> Engine::connect() {
   return {};
 }
 
-/// Which physical device it is shows only once it answers, so the lock comes after.
 Result<void> Engine::connect_one(std::size_t i, const std::string& name) {
-  auto info = devices_[i]->connect();
+  auto info = connect_locked(*devices_[i], device_lock_directories(), locks_);
   if (!info) return fail(info.error().code, "device " + name + ": " + info.error().text);
   infos_.push_back(*info);
-  if (info->lock_name.empty()) return {};
-  auto locks = lock_device(info->lock_name, device_lock_directories());
-  if (!locks) return fail(locks.error().code, "device " + name + ": " + locks.error().text);
-  for (LockFile& lock : *locks) locks_.push_back(std::move(lock));
   return {};
 }
 

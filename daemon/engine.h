@@ -76,7 +76,7 @@ class Engine {
   std::unique_ptr<ServoThread> servo_;
 };
 
-/// The loop section as the servo thread takes it.
-ServoOptions servo_options(const config::Loop& loop);
+/// The loop as the servo thread takes it.
+ServoOptions servo_options(const config::Compiled& compiled);
 
 }  // namespace hapticd::daemon

@@ -11,6 +11,8 @@
 #include "daemon/ctl_simulate.h"
 #include "daemon/ctl_verbs.h"
 #include "daemon/hapticctl_design.h"
+#include "daemon/hapticctl_devices.h"
+#include "daemon/hapticctl_emulate.h"
 #include "daemon/hapticctl_identify.h"
 #include "daemon/hapticctl_sweep.h"
 #include "daemon/hapticctl_zwidth.h"
@@ -33,6 +35,8 @@ struct CommandLine {
   IdentifyOptions identify;
   ZwidthOptions zwidth;
   SweepOptions sweep;
+  EmulateOptions emulate;
+  DevicesOptions devices;
   std::string log_axes, size;  ///< checked, and put into `plot`, as they are read
   std::function<ExitCode()> run;
 };

@@ -28,7 +28,7 @@ MonotonicClock::MonotonicClock(const TickScheduleOptions& options) noexcept
   schedule_.start(both_clocks());
 }
 
-/// Samples are waited for up to half of the period: efforts then still go out within it.
+/// Samples are waited for as long as any device may take: efforts then still go out within the period.
 TickClock::Tick MonotonicClock::next() noexcept {
   const std::int64_t at_ns = schedule_.next_ns();
   const timespec at{.tv_sec = static_cast<time_t>(at_ns / 1'000'000'000),
@@ -38,7 +38,7 @@ TickClock::Tick MonotonicClock::next() noexcept {
   const Wake wake = schedule_.woke(both_clocks());
   return {.time = {.tick = wake.tick,
                    .start_ns = wake.start_ns,
-                   .deadline_ns = wake.start_ns + period_ns_ / 2},
+                   .deadline_ns = wake.start_ns + period_ns_ * 4 / 5},
           .missed = wake.missed_ticks};
 }
 

@@ -188,10 +188,10 @@ Result<void> run(Loop& loop, const IdentifySetup& setup, const std::atomic<bool>
 }
 
 Result<std::vector<LockFile>> connect(IdentifySetup& setup) {
-  auto info = setup.device->connect();
+  std::vector<LockFile> locks;
+  auto info = connect_locked(*setup.device, device_lock_directories(), locks);
   if (!info) return tl::unexpected(info.error());
-  if (info->lock_name.empty()) return std::vector<LockFile>{};
-  return lock_device(info->lock_name, device_lock_directories());
+  return locks;
 }
 
 }  // namespace

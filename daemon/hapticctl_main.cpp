@@ -116,6 +116,55 @@ void add_plot(CommandLine& line) {
       ->type_name("WxH");
 }
 
+void add_bus_verbs(CommandLine& line) {
+  CLI::App* devices =
+      add_verb(line, "devices", "which devices are there, and why one cannot be used",
+               [&line] { return daemon::run_devices(line.devices, line.json); });
+  devices->add_option("--interface", line.devices.interface, "this one alone (default: all)")
+      ->type_name("NAME");
+  devices
+      ->add_option("--ask", line.devices.ask,
+                   "send this driver's question to every node, not only to those that were heard; "
+                   "it may be a command of another protocol")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"odrive", "moteus", "cia402"}))
+      ->type_name("DRIVER");
+  devices->add_option("--seconds", line.devices.listen_s, "how long each bus is listened to")
+      ->capture_default_str()
+      ->check(daemon::within(0.0, 60.0))
+      ->type_name("S");
+
+  CLI::App* emulate = add_verb(line, "emulate", "stand in for the CAN drives of a config",
+                               [&line] { return daemon::run_emulate(line.emulate, line.json); });
+  daemon::EmulateOptions& options = line.emulate;
+  emulate->add_option("CONFIG", options.config, "the config")->required();
+  emulate->add_option("--bus", options.bus, "devices on this interface alone (default: all)")
+      ->type_name("NAME");
+  emulate->add_option("--duration", options.duration_s, "end after so many seconds")
+      ->check(daemon::within(0.0, 1e9))
+      ->type_name("S");
+  emulate->add_option("--loss", options.loss, "share of the frames that are lost, each way")
+      ->check(daemon::within(0.0, 1.0))
+      ->type_name("P");
+  emulate->add_option("--duplicate", options.duplicate, "share of the frames that come twice")
+      ->check(daemon::within(0.0, 1.0))
+      ->type_name("P");
+  emulate->add_option("--delay", options.delay_s, "of every frame, each way")
+      ->check(daemon::within(0.0, 1.0))
+      ->type_name("S");
+  emulate->add_option("--jitter", options.jitter_s, "and up to so much more")
+      ->check(daemon::within(0.0, 1.0))
+      ->type_name("S");
+  emulate->add_option("--drift", options.drift_ppm, "that the drives' clocks run fast by")
+      ->check(daemon::within(-1e4, 1e4))
+      ->type_name("PPM");
+  emulate
+      ->add_option("--fault", options.faults,
+                   "KIND:AXIS@SECONDS, may be repeated: reset, fail, mute or speak, such as "
+                   "reset:left.x@2.5")
+      ->type_name("FAULT");
+}
+
 void describe(CommandLine& line) {
   line.app.set_version_flag("--version", "hapticctl " HAPTICD_VERSION);
   line.app.require_subcommand(1);
@@ -130,6 +179,7 @@ void describe(CommandLine& line) {
   daemon::add_design_verbs(line);
   add_cost(line);
   add_doctor(line);
+  add_bus_verbs(line);
   add_plot(line);
   line.app.footer(
       "Exit: 0 ok, 1 the answer is no, 64 usage, 65 bad data, 66 no such file, 69 no hapticd, "

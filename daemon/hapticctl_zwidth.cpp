@@ -161,15 +161,8 @@ class Zwidth {
     } else {
       rig_.clock = std::make_unique<VirtualClock>(period_ns);
     }
-    auto info = rig_.devices.front()->connect();
+    auto info = connect_locked(*rig_.devices.front(), device_lock_directories(), locks_);
     if (!info) return tl::unexpected(info.error());
-    if (info->lock_name.empty()) return {};
-    auto locks = lock_device(info->lock_name, device_lock_directories());
-    if (!locks) {
-      disconnect();
-      return tl::unexpected(locks.error());
-    }
-    locks_ = std::move(*locks);
     return {};
   }
   void disconnect() {

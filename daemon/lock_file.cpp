@@ -9,11 +9,16 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
 namespace hapticd::daemon {
 namespace {
+
+/// What files of device locks are called, before the name.
+const std::string kDeviceLock = "hapticd-device-";
 
 /// The process id in a lock file, or words for not knowing it: the holder may not have written it
 /// yet.
@@ -89,7 +94,7 @@ Result<std::vector<LockFile>> lock_device(const std::string& lock_name,
   std::vector<LockFile> locks;
   Error last{"no directory for lock files was given", ExitCode::cannot_create};
   for (const std::string& directory : directories) {
-    auto lock = LockFile::acquire(directory + "/hapticd-device-" + file + ".lock",
+    auto lock = LockFile::acquire(directory + "/" + kDeviceLock + file + ".lock",
                                   "the device " + lock_name);
     if (lock) {
       locks.push_back(std::move(*lock));
@@ -101,6 +106,51 @@ Result<std::vector<LockFile>> lock_device(const std::string& lock_name,
   }
   if (locks.empty()) return tl::unexpected(last);
   return locks;
+}
+
+namespace {
+
+Result<void> lock_all(const std::vector<std::string>& names,
+                      const std::vector<std::string>& directories, std::vector<LockFile>& locks) {
+  for (const std::string& name : names) {
+    auto more = lock_device(name, directories);
+    if (!more) return tl::unexpected(more.error());
+    std::ranges::move(*more, std::back_inserter(locks));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<drivers::DeviceInfo> connect_locked(drivers::Device& device,
+                                           const std::vector<std::string>& directories,
+                                           std::vector<LockFile>& locks) {
+  const std::vector<std::string> known = device.lock_names();
+  std::vector<LockFile> held;
+  if (auto locked = lock_all(known, directories, held); !locked)
+    return tl::unexpected(locked.error());
+  auto info = device.connect();
+  if (!info) return info;
+  if (known.empty()) {
+    if (auto locked = lock_all(device.lock_names(), directories, held); !locked) {
+      device.disconnect();
+      return tl::unexpected(locked.error());
+    }
+  }
+  std::ranges::move(held, std::back_inserter(locks));
+  return info;
+}
+
+bool is_locked(const std::string& name_start, const std::vector<std::string>& directories) {
+  for (const std::string& directory : directories) {
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, none)) {
+      if (!entry.path().filename().string().starts_with(kDeviceLock + name_start)) continue;
+      const auto lock = LockFile::acquire(entry.path().string(), name_start);
+      if (!lock && lock.error().code == ExitCode::try_again) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<std::string> device_lock_directories() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "control/core/result.h"
+#include "drivers/device.h"
 
 namespace hapticd::daemon {
 
@@ -27,11 +28,19 @@ class LockFile {
   int fd_ = -1;
 };
 
-/// Locks a physical device by DeviceInfo::lock_name in each of `directories`: a hardened service
+/// Locks a physical device by a name of Device::lock_names() in each of `directories`: a hardened service
 /// and a program that a user starts by hand can write to different ones, but read each other's.
 /// Fails where none of them can hold the lock.
 Result<std::vector<LockFile>> lock_device(const std::string& lock_name,
                                           const std::vector<std::string>& directories);
+
+/// Connects a device that nobody else drives, and holds its locks: where it says before who it is, nothing reaches it
+/// that another program holds. On an error it is not connected. `locks` gets more.
+Result<drivers::DeviceInfo> connect_locked(drivers::Device& device,
+                                           const std::vector<std::string>& directories,
+                                           std::vector<LockFile>& locks);
+/// Whether a program holds a device whose name starts so.
+bool is_locked(const std::string& name_start, const std::vector<std::string>& directories);
 
 /// Where device locks stand: the service's own directory, and the one for all.
 std::vector<std::string> device_lock_directories();

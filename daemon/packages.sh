@@ -13,6 +13,7 @@
   packages_clang=(clang-14 libclang-rt-14-dev)
   packages_rtsan=(clang-22 libclang-rt-22-dev)
   packages_bench=(libbenchmark-dev)
+  packages_vm=(qemu-system-x86 busybox-static cpio kmod iproute2 can-utils rt-tests python3)
 }
 
 as_root() {

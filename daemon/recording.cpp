@@ -99,6 +99,8 @@ void add_input_fields(std::vector<Field>& fields, const build::ProgramSpec& spec
     add_element(fields, axis + ".age_ns", "ns", "i64", layout.age_ns, i);
     add_element(fields, axis + ".freshness", "-", "u8", layout.freshness, i);
     add_element(fields, axis + ".homed", "-", "u8", layout.homed, i);
+    add_element(fields, axis + ".drive_limits", "-", "u16", layout.drive_limits, i);
+    add_element(fields, axis + ".drive_faults", "-", "u32", layout.drive_faults, i);
     add_element(fields, axis + ".delivered", unit_of(control::Quantity::effort, rotary), "f64",
                 layout.delivered, i);
   }

@@ -95,6 +95,7 @@ void compare_device(const config::Device& a, const config::Device& b, const std:
                     Differences& found) {
   found.compare(a.name == b.name, key + ".name");
   found.compare(a.driver == b.driver, key + ".driver");
+  found.compare(a.can == b.can, key + ".can");
   found.compare(a.kinematics == b.kinematics, key + ".kinematics");
   found.compare(a.pose == b.pose, key + ".pose");
   found.compare(a.gravity == b.gravity, key + ".gravity");

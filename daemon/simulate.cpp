@@ -39,7 +39,7 @@ class Simulation {
  public:
   Simulation(config::Compiled& compiled, RecordingWriter writer)
       : program_(*compiled.program),
-        period_ns_(servo_options(compiled.document.config.loop).schedule.period_ns),
+        period_ns_(servo_options(compiled).schedule.period_ns),
         devices_(make_devices(compiled)),
         writer_(std::move(writer)),
         slot_(program_.plan().record.bytes / sizeof(std::uint64_t)),

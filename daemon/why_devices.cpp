@@ -71,13 +71,15 @@ void add_extremes(const RecordingView& view, Stretch stretch, Part& axis) {
   const Field* speed = view.field(axis.name + ".qd");
   const Field* age = view.field(axis.name + ".age_ns");
   const Field* freshness = view.field(axis.name + ".freshness");
-  double fastest = 0, oldest_ns = 0, not_fresh = 0;
+  const Field* limits = view.field(axis.name + ".drive_limits");
+  double fastest = 0, oldest_ns = 0, not_fresh = 0, limited = 0;
   for (std::size_t i = stretch.first; i <= stretch.end; ++i) {
     if (speed != nullptr && i < stretch.end)
       fastest = std::fmax(fastest, std::abs(view.value(i, *speed)));
     if (age != nullptr) oldest_ns = std::fmax(oldest_ns, view.value(i, *age));
     const bool fresh = view.whole(i, freshness) == static_cast<std::int64_t>(Freshness::fresh);
     if (freshness != nullptr && !fresh) ++not_fresh;
+    if (limits != nullptr && view.whole(i, limits) != 0) ++limited;
   }
   if (speed != nullptr)
     axis.terms.push_back({"largest_speed", "largest speed", fastest, unit_for_people(speed->unit)});
@@ -85,6 +87,9 @@ void add_extremes(const RecordingView& view, Stretch stretch, Part& axis) {
     axis.terms.push_back({"oldest_sample_ms", "oldest sample", oldest_ns * 1e-6, "ms"});
   if (freshness != nullptr)
     axis.terms.push_back({"ticks_without_sample", "ticks without a fresh sample", not_fresh, ""});
+  if (limited > 0)
+    axis.terms.push_back(
+        {"ticks_limited_by_drive", "ticks in which the drive limited its torque", limited, ""});
 }
 
 DeviceStory device_in(const RecordingView& view, Stretch stretch, const std::string& name) {

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "control/core/result.h"
 #include "control/core/sample.h"
@@ -28,10 +29,8 @@ enum class Timing : std::uint8_t {
 
 /// Identity and timing, as found by connect().
 struct DeviceInfo {
-  std::string model{};      ///< for people
-  std::string serial{};     ///< empty: the device has none
-  std::string lock_name{};  ///< names the physical device among all on this machine; empty: nothing
-                            ///< physical to lock
+  std::string model{};   ///< for people
+  std::string serial{};  ///< empty: the device has none
   Timing timing = Timing::in_phase;
   double worst_sample_age_s =
       0;  ///< older samples count as missing; part of the latency of every check
@@ -52,6 +51,10 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   virtual ~Device() = default;
+
+  /// Names of what is physical among all on this machine, one for each part that another program could drive: before
+  /// connect() where the config says which it is, else after it. Empty: nothing to lock.
+  virtual std::vector<std::string> lock_names() const { return {}; }
 
   // -- set-up, supervisor thread
   // -------------------------------------------------------------------------------------

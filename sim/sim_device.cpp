@@ -50,7 +50,6 @@ Result<drivers::DeviceInfo> SimDevice::connect() {
   started_ = arm_wanted_ = armed_ = dropped_out_ = false;
   return drivers::DeviceInfo{.model = "simulated device",
                              .serial = {},
-                             .lock_name = {},
                              .timing = drivers::Timing::in_phase,
                              .worst_sample_age_s = 0};
 }

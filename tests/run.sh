@@ -18,8 +18,9 @@ usage: tests/run.sh [--clang] [--asan] [--asan-all] [--tsan] [--rtsan] [--long] 
   --rtsan   RealtimeSanitizer (clang 22), the tests of the loop
   --long    the tests that take long
   --bench   the benchmarks, printed, not judged
-  --vm      tests in a virtual machine         (no suite yet: arrives with the CAN drivers)
-  --fuzz    coverage-guided fuzzing of parsers (no suite yet: arrives with the drivers' codecs)
+  --vm      a PREEMPT_RT kernel in QEMU: SocketCAN, a real CAN driver, a certified wall, the loop's punctuality
+  --fuzz    coverage-guided fuzzing (clang 14): 10^5 inputs a CAN codec, 10^4 a drive and the socket; a hundred times
+            that with --long
 END
 }
 
@@ -103,11 +104,58 @@ suite_long() {
 }
 suite_bench() {
   install_packages "${packages_bench[@]}"
-  build_in build/bench '' 'bench_tick bench_scene bench_mesh' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_BUILD_BENCH=ON
+  build_in build/bench '' 'bench_tick bench_scene bench_mesh bench_can' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_BUILD_BENCH=ON
   find build/bench -name 'bench_*' -type f -perm -u+x -exec {} \;
 }
-suite_vm() { skip "--vm: no VM suite yet: arrives with the CAN drivers"; }
-suite_fuzz() { skip "--fuzz: no fuzz suite yet: arrives with the drivers' codecs"; }
+suite_vm() {
+  install_packages "${packages_vm[@]}" || true # run.sh names what is still missing
+  build_in build '' 'hapticd hapticctl can_kernel_test' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_WERROR="$werror"
+  local code=0
+  tests/vm/run.sh build/tests/can_kernel_test | tee -a build/ctest.log || code=$?
+  case $code in
+    69 | 77) skip "--vm: cannot run here (exit $code)" ;;
+    *) return "$code" ;;
+  esac
+}
+
+# fuzz_one <target> <inputs>: prints how many ran and how fast; a crash prints its report and the file of the input.
+fuzz_one() {
+  local target=$1 runs=$2 found=build/fuzz/found/$1 log=build/fuzz/$1.log artifact
+  rm -rf "$found" && mkdir -p "$found"
+  if ! "${run_in[@]}" "build/fuzz/tests/fuzz/$target" -runs="$runs" -seed=1 -max_len=128 -timeout=10 \
+    -print_final_stats=0 -artifact_prefix=build/fuzz/ "$found" "build/fuzz/corpus/fuzz_${target%_*}" > "$log" 2>&1; then
+    artifact=$(sed -n 's/.*Test unit written to //p' "$log" | tail -n 1)
+    grep -v '^#[0-9]*[[:space:]]*[A-Zp]' "$log" | tail -n 40
+    echo "$target: FAILED; again with: build/fuzz/tests/fuzz/$target ${artifact:-(no input was kept)}"
+    return 1
+  fi
+  sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\) second.*/\1 \2/p" "$log" \
+    | awk -v target="$target" '{ printf "%-13s %9d inputs %6d s %8d a second\n", target, $1, $2, $1 / ($2 > 0 ? $2 : 1) }'
+}
+suite_fuzz() {
+  local target runs started pids=() failed=0 part=100
+  local targets=(odrive_codec moteus_codec cia402_codec odrive_drive moteus_drive cia402_drive socket)
+  case " ${suites[*]} " in *" long "*) part=1 ;; esac
+  install_packages "${packages_build[@]}" "${packages_clang[@]}"
+  fix_addresses
+  build_in build/fuzz clang++-14 fuzz -DCMAKE_BUILD_TYPE=Debug -DHAPTICD_BUILD_TESTS=OFF -DHAPTICD_BUILD_FUZZ=ON \
+    -DHAPTICD_WERROR=ON
+  rm -f build/fuzz/{crash,leak,timeout,oom}-*
+  started=$SECONDS
+  for target in "${targets[@]}"; do
+    # As many at a time as there are processors.
+    [ "${#pids[@]}" -lt "$jobs" ] || { wait "${pids[0]}" || failed=1 && pids=("${pids[@]:1}"); }
+    case $target in
+      *_codec) runs=$((10000000 / part)) ;;
+      *) runs=$((1000000 / part)) ;;
+    esac
+    fuzz_one "$target" "$runs" &
+    pids+=($!)
+  done
+  for target in "${pids[@]}"; do wait "$target" || failed=1; done
+  echo "fuzz: $((SECONDS - started)) s"
+  return "$failed"
+}
 
 mkdir -p build
 results=()
@@ -121,7 +169,7 @@ for suite in "${suites[@]}"; do
   (set -e && "suite_$suite" < /dev/null)
   code=$?
   set -e
-  verdict=$(grep -hE 'tests passed|SKIPPED' build/ctest.log | paste -sd ';' || true)
+  verdict=$(grep -hE 'tests passed|SKIPPED|^vm: ' build/ctest.log | paste -sd ';' || true)
   [ "$code" -eq 0 ] || { worst=1 && verdict="FAILED (exit $code) $verdict"; }
   results+=("$(printf '%-8s %5d s  %s' "$suite" $((SECONDS - started)) "${verdict:-done}")")
 done

@@ -2,17 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace hapticd::can {
 namespace {
 
 using drivers::Timing;
 
-/// A frame and how often it comes.
+enum class When : std::uint8_t { command, answer, any };
+/// A frame, how often it comes, and in which half of a tick.
 struct Use {
   double s = 0;
   double every_s = 0;
-  bool command = false;  ///< goes out after the answers have come
+  When when = When::any;
 };
 
 /// What one drive has on the bus, and what all drives of a device share.
@@ -26,11 +28,11 @@ double classic_s(const DeviceOptions& device, std::size_t size) {
 
 Uses odrive_uses(const DeviceOptions& device) {
   const double tick = device.period_s;
-  Uses uses{.axis = {{classic_s(device, 4), tick, true},  // torque
+  Uses uses{.axis = {{classic_s(device, 4), tick, When::command},  // torque
                      {classic_s(device, 8), device.heartbeat_every_s}}};
   if (device.timing == Timing::in_phase) {
-    uses.axis.push_back({classic_s(device, 0), tick});
-    uses.axis.push_back({classic_s(device, 8), tick});
+    uses.axis.push_back({classic_s(device, 0), tick, When::answer});
+    uses.axis.push_back({classic_s(device, 8), tick, When::answer});
   } else {
     uses.axis.push_back({classic_s(device, 8), device.estimates_every_s});
   }
@@ -40,18 +42,20 @@ Uses odrive_uses(const DeviceOptions& device) {
 Uses moteus_uses(const DeviceOptions& device) {
   const auto s = [&](std::size_t size) { return worst_fd_s(size, true, device.rates); };
   constexpr std::size_t kCommand = 48, kQuestion = 12, kReply = 24;
-  Uses uses{.axis = {{s(kCommand), device.period_s, true}, {s(kReply), device.period_s}}};
-  if (device.timing == Timing::in_phase) uses.axis.push_back({s(kQuestion), device.period_s});
+  Uses uses{.axis = {{s(kCommand), device.period_s, When::command},
+                     {s(kReply), device.period_s, When::answer}}};
+  if (device.timing == Timing::in_phase)
+    uses.axis.push_back({s(kQuestion), device.period_s, When::answer});
   return uses;
 }
 
 Uses cia402_uses(const DeviceOptions& device) {
   const double tick = device.period_s;
-  return {.axis = {{classic_s(device, 4), tick, true},
-                   {classic_s(device, 8), tick},
+  return {.axis = {{classic_s(device, 4), tick, When::command},
+                   {classic_s(device, 8), tick, When::answer},
                    {classic_s(device, 1), device.heartbeat_every_s}},
-          .shared = {{classic_s(device, 0), tick},
-                     {classic_s(device, 1), std::max(tick, device.watchdog_s / 3)}}};
+          .shared = {{classic_s(device, 0), tick, When::answer},
+                     {classic_s(device, 1), std::max(tick, device.watchdog_s / 3), When::answer}}};
 }
 
 Uses uses_of(const DeviceOptions& device) {
@@ -71,10 +75,16 @@ double share_of(const std::vector<Use>& uses) {
   for (const Use& use : uses) share += use.s / use.every_s;
   return share;
 }
-double sum_of(const std::vector<Use>& uses, bool with_commands) {
+double sum_of(const std::vector<Use>& uses, std::initializer_list<When> wanted) {
   double sum = 0;
-  for (const Use& use : uses) sum += use.command && !with_commands ? 0 : use.s;
+  for (const Use& use : uses)
+    for (const When when : wanted) sum += use.when == when ? use.s : 0;
   return sum;
+}
+double longest_own(const std::vector<Use>& uses) {
+  double longest = 0;
+  for (const Use& use : uses) longest = std::max(longest, use.when == When::any ? use.s : 0);
+  return longest;
 }
 
 std::size_t axes_on(const DeviceOptions& device, const std::string& interface) {
@@ -84,7 +94,7 @@ std::size_t axes_on(const DeviceOptions& device, const std::string& interface) {
 
 BusLoad load_of(const std::vector<DeviceOptions>& devices, const std::string& interface) {
   BusLoad load{.interface = interface};
-  double share_of_axis = 0, shared = 0;
+  double share_of_axis = 0, shared = 0, own_s = 0;
   for (const DeviceOptions& device : devices) {
     const std::size_t axes = axes_on(device, interface);
     if (axes == 0) continue;
@@ -94,9 +104,15 @@ BusLoad load_of(const std::vector<DeviceOptions>& devices, const std::string& in
     load.axes += axes;
     shared += share_of(uses.shared);
     load.share += count * share_of(uses.axis) + share_of(uses.shared);
-    load.busiest_s += count * sum_of(uses.axis, true) + sum_of(uses.shared, true);
-    load.answers_s += count * sum_of(uses.axis, false) + sum_of(uses.shared, false);
+    const auto sum = [&](std::initializer_list<When> wanted) {
+      return count * sum_of(uses.axis, wanted) + sum_of(uses.shared, wanted);
+    };
+    load.busiest_s += sum({When::command, When::answer, When::any});
+    load.answers_s += sum({When::answer});
+    load.commands_s += sum({When::command, When::any});
+    own_s = std::max(own_s, longest_own(uses.axis));
   }
+  load.answers_s += own_s;
   load.axes_that_fit =
       static_cast<std::size_t>(std::max(0.0, std::floor((kMostLoad - shared) / share_of_axis)));
   return load;
@@ -122,24 +138,36 @@ std::vector<BusLoad> bus_loads(const std::vector<DeviceOptions>& devices) {
   return loads;
 }
 
-double worst_answer_s(const DeviceOptions& device, double answers_s) {
-  return kWake_s + device.turnaround_s + answers_s;
+BusLoad worst_of(const DeviceOptions& device, const std::vector<BusLoad>& loads) {
+  BusLoad worst;
+  for (const BusLoad& load : loads) {
+    if (axes_on(device, load.interface) == 0) continue;
+    worst.busiest_s = std::max(worst.busiest_s, load.busiest_s);
+    worst.answers_s = std::max(worst.answers_s, load.answers_s);
+    worst.commands_s = std::max(worst.commands_s, load.commands_s);
+  }
+  return worst;
 }
 
-double worst_sample_age_s(const DeviceOptions& device, double busiest_s) {
+double worst_answer_s(const DeviceOptions& device, const BusLoad& bus) {
+  return kWake_s + device.turnaround_s + bus.answers_s;
+}
+
+double worst_sample_age_s(const DeviceOptions& device, const BusLoad& bus) {
   switch (device.timing) {
     case Timing::in_phase:  // of one that came first, when the last one comes at the deadline
       return device.collect_s;
     case Timing::free_running:
-      return device.estimates_every_s * (1 + kDrift) + busiest_s;
+      return device.estimates_every_s * (1 + kDrift) + bus.busiest_s;
     case Timing::reply_to_command:
       return device.period_s;
   }
   return 0;
 }
 
-double worst_latency_s(const DeviceOptions& device, double busiest_s) {
-  return worst_sample_age_s(device, busiest_s) + kHost_s + busiest_s + device.drive_delay_s;
+double worst_latency_s(const DeviceOptions& device, const BusLoad& bus) {
+  const double frames_s = device.timing == Timing::in_phase ? bus.commands_s : bus.busiest_s;
+  return worst_sample_age_s(device, bus) + kHost_s + frames_s + device.drive_delay_s;
 }
 
 }  // namespace hapticd::can

@@ -16,18 +16,23 @@ struct BusLoad {
   std::string interface {};
   double share = 0;      ///< of the bus' time, on average over the rarer frames
   double busiest_s = 0;  ///< of one tick that has every frame
-  double answers_s = 0;  ///< of its questions, answers and what drives send beside them
+  // In phase. Questions and answers with one frame that a drive sends on its own: with more of them an answer may be late,
+  // and is then missing. Commands, with all that drives send on their own.
+  double answers_s = 0, commands_s = 0;
   std::size_t axes = 0;
   std::size_t axes_that_fit = 0;  ///< of the kind of its first device, within kMostLoad
 };
 /// By interface, over all devices.
 std::vector<BusLoad> bus_loads(const std::vector<DeviceOptions>& devices);
 
-/// At collect [s], on a bus whose busiest tick takes so long.
-double worst_sample_age_s(const DeviceOptions& device, double busiest_s);
+/// The worst of the buses that a device is on.
+BusLoad worst_of(const DeviceOptions& device, const std::vector<BusLoad>& loads);
+
+/// At collect [s].
+double worst_sample_age_s(const DeviceOptions& device, const BusLoad& bus);
 /// From when an axis is measured until the force acts that rests on it.
-double worst_latency_s(const DeviceOptions& device, double busiest_s);
+double worst_latency_s(const DeviceOptions& device, const BusLoad& bus);
 /// In phase: from the start of a tick until the last answer.
-double worst_answer_s(const DeviceOptions& device, double answers_s);
+double worst_answer_s(const DeviceOptions& device, const BusLoad& bus);
 
 }  // namespace hapticd::can

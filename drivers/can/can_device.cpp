@@ -28,36 +28,6 @@ std::unique_ptr<Drive> make_drive(const DeviceOptions& device, const DriveOption
   return nullptr;
 }
 
-/// Over one bus, before the loop runs.
-class BusConversation final : public Conversation {
- public:
-  BusConversation(Socket& socket, Host& host) : socket_(socket), host_(host) {}
-
-  void send(const Frame& frame) override {
-    waiting_ = {};  // answers to what was asked before
-    (void)socket_.send({&frame, 1});
-  }
-  std::optional<Frame> next(double timeout_s) override {
-    const std::int64_t until_ns = host_.now_ns() + std::llround(1e9 * timeout_s);
-    for (;;) {
-      if (waiting_.empty()) waiting_ = socket_.receive(host_.now_ns());
-      if (!waiting_.empty()) {
-        const Frame frame = waiting_.front().frame;
-        waiting_ = waiting_.subspan(1);
-        return frame;
-      }
-      if (host_.now_ns() >= until_ns || socket_.trouble() >= Trouble::down) return std::nullopt;
-      host_.wait(socket_.descriptor(), until_ns);
-    }
-  }
-  std::int64_t now_ns() override { return host_.now_ns(); }
-
- private:
-  Socket& socket_;
-  Host& host_;
-  std::span<const Received> waiting_{};
-};
-
 }  // namespace
 
 CanDevice::CanDevice(DeviceOptions options, Host& host)
@@ -71,6 +41,13 @@ CanDevice::~CanDevice() {
 
 // -- set-up
 
+std::vector<std::string> CanDevice::lock_names() const {
+  std::vector<std::string> names;
+  for (const DriveOptions& drive : options_.drives)
+    names.push_back("can-" + drive.interface + "-" + std::to_string(drive.node));
+  return names;
+}
+
 Result<drivers::DeviceInfo> CanDevice::connect() {
   disconnect();
   make_axes();
@@ -81,12 +58,8 @@ Result<drivers::DeviceInfo> CanDevice::connect() {
     return tl::unexpected(found.error());
   }
   make_wait_descriptor();
-  std::string lock = "can";
-  for (const DriveOptions& drive : options_.drives)
-    lock += "-" + drive.interface + "-" + std::to_string(drive.node);
   return drivers::DeviceInfo{.model = *found,
                              .serial = {},
-                             .lock_name = lock,
                              .timing = options_.timing,
                              .worst_sample_age_s = options_.worst_sample_age_s};
 }
@@ -97,7 +70,8 @@ void CanDevice::make_axes() {
   for (const DriveOptions& options : options_.drives) {
     auto bus = std::ranges::find(buses_, options.interface, &Bus::interface);
     if (bus == buses_.end()) {
-      buses_.push_back({.interface = options.interface, .axes = {}, .socket = nullptr, .outbox = {}});
+      buses_.push_back(
+          {.interface = options.interface, .axes = {}, .socket = nullptr, .outbox = {}});
       bus = std::prev(buses_.end());
     }
     bus->axes.push_back(axes_.size());
@@ -129,7 +103,7 @@ Result<void> CanDevice::open_buses() {
 Result<std::string> CanDevice::connect_drives() {
   std::string found;
   for (Bus& bus : buses_) {
-    BusConversation conversation(*bus.socket, host_);
+    SocketConversation conversation(*bus.socket, host_);
     for (const std::size_t i : bus.axes) {
       auto drive = axes_[i].drive->connect(conversation);
       if (!drive) return drive;
@@ -187,14 +161,15 @@ drivers::Collected CanDevice::collect(std::span<AxisSample> axes, Aux& aux) noex
   report(aux);
   fill(axes);
   return options_.timing == Timing::in_phase && owed() ? drivers::Collected::waiting
-                                                        : drivers::Collected::complete;
+                                                       : drivers::Collected::complete;
 }
 
 /// Takes all that has arrived: the newest counts. A flood of frames must not hold the tick for ever.
 void CanDevice::empty(Bus& bus, bool in_time) noexcept {
   constexpr int kMostCalls = 16;
   for (int call = 0; call < kMostCalls; ++call) {
-    for (const Received& received : bus.socket->receive(host_.now_ns())) hear(bus, received, in_time);
+    for (const Received& received : bus.socket->receive(host_.now_ns()))
+      hear(bus, received, in_time);
     if (!bus.socket->more()) return;
   }
 }
@@ -231,8 +206,8 @@ void CanDevice::fill(std::span<AxisSample> samples) noexcept {
     sample.age_ns = now_ns - drive.stamp_ns();
     sample.drive_limits = drive.limits();
     sample.drive_faults = drive.faults();
-    const bool young = options_.timing == Timing::free_running ? sample.age_ns <= worst_age_ns_
-                                                               : axes_[i].heard;
+    const bool young =
+        options_.timing == Timing::free_running ? sample.age_ns <= worst_age_ns_ : axes_[i].heard;
     // A drive that proves its watchdog is not asked; it has no force then, and stands where it was.
     const bool known = drive.knows_position() && (young || drive.silent());
     sample.freshness = known ? Freshness::fresh : Freshness::missing;
@@ -268,7 +243,9 @@ void CanDevice::command(std::span<const double> effort, std::span<double> delive
     for (const std::size_t i : bus.axes) {
       Drive& drive = *axes_[i].drive;
       const double most_Nm = drive.max_torque_Nm();
-      const double torque_Nm = std::clamp(effort[i] * drive.torque_per_effort(), -most_Nm, most_Nm);
+      const double wanted_Nm = effort[i] * drive.torque_per_effort();
+      const double torque_Nm =
+          std::isfinite(wanted_Nm) ? std::clamp(wanted_Nm, -most_Nm, most_Nm) : 0;
       if (bus_failed_)
         drive.stop_now(bus.outbox);
       else

@@ -31,6 +31,8 @@ class CanDevice final : public drivers::Device {
   explicit CanDevice(DeviceOptions options, Host& host = this_host());
   ~CanDevice() override;
 
+  /// "can-can0-3": one for each drive.
+  std::vector<std::string> lock_names() const override;
   Result<drivers::DeviceInfo> connect() override;
   void disconnect() noexcept override;
   void request(const drivers::TickTime& time) noexcept override;
@@ -49,9 +51,9 @@ class CanDevice final : public drivers::Device {
   struct Axis {
     std::unique_ptr<Drive> drive;
     std::size_t bus = 0;
-    bool heard = false;         ///< a sample, in this tick
-    double delivered_Nm = 0;    ///< what the drive was last told
-    std::size_t frames_end = 0; ///< of this tick's outbox: so many frames until its last one
+    bool heard = false;          ///< a sample, in this tick
+    double delivered_Nm = 0;     ///< what the drive was last told
+    std::size_t frames_end = 0;  ///< of this tick's outbox: so many frames until its last one
   };
   struct Bus {
     std::string interface;

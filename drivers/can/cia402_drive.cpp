@@ -40,13 +40,13 @@ Result<std::string> Cia402Drive::connect(Conversation& conversation) {
                                                    .place = place_of(options_)});
   if (!found) return tl::unexpected(found.error());
   rated_Nm_ = found->rated_torque_Nm;
-  if (std::abs(found->counts_per_turn - options_.counts_per_turn) > 1e-9 * options_.counts_per_turn) {
-    return hapticd::fail(ExitCode::unavailable,
-                         place_of(options_) + ": the drive counts " +
-                             std::to_string(found->counts_per_turn) +
-                             " per turn (608F), the config says " +
-                             std::to_string(options_.counts_per_turn) +
-                             " (can.counts_per_turn): torque would be wrong by that factor");
+  if (std::abs(found->counts_per_turn - options_.counts_per_turn) >
+      1e-9 * options_.counts_per_turn) {
+    return hapticd::fail(
+        ExitCode::unavailable,
+        place_of(options_) + ": the drive counts " + std::to_string(found->counts_per_turn) +
+            " per turn (608F), the config says " + std::to_string(options_.counts_per_turn) +
+            " (can.counts_per_turn): torque would be wrong by that factor");
   }
   heartbeat_ns_ = conversation.now_ns();
   knows_position_ = true;
@@ -82,7 +82,8 @@ void Cia402Drive::hear_status(const cia402::Tpdo1& pdo, std::int64_t stamp_ns) n
   state_ = cia402::state_of(pdo.status);
   limits_ = cia402::bits_of(pdo.status).internal_limit ? 1 : 0;
   measured(pdo.position, stamp_ns);
-  if (armed_ && !running()) fail("the drive left operation enabled, it is now", cia402::word_of(state_));
+  if (armed_ && !running())
+    fail("the drive left operation enabled, it is now", cia402::word_of(state_));
 }
 
 void Cia402Drive::hear_emergency(const cia402::Emergency& emergency) noexcept {
@@ -101,6 +102,8 @@ void Cia402Drive::hear_heartbeat(NodeState state, std::int64_t stamp_ns) noexcep
 }
 
 void Cia402Drive::start_arming() noexcept {
+  state_ =
+      State::not_ready;  // until its next status: an old one may be from before it was switched off
   arming_since_ns_ = now_ns_;
   control_ = 0;
 }
@@ -120,7 +123,8 @@ void Cia402Drive::command(double torque_Nm, Outbox& outbox) noexcept {
   outbox.add(cia402::rpdo1(options_.node, next_control(), raw.value_or(0)));
   carried_Nm_ = armed_ ? 1e-3 * rated_Nm_ * raw.value_or(0) : 0;
   if (!armed_ && now_ns_ - arming_since_ns_ > kEnable_ns)
-    fail("the drive did not reach operation enabled within two seconds, it is", cia402::word_of(state_));
+    fail("the drive did not reach operation enabled within two seconds, it is",
+         cia402::word_of(state_));
 }
 
 void Cia402Drive::stop(bool must, Outbox& outbox) noexcept {

@@ -10,9 +10,10 @@ namespace {
 constexpr int kTries = 3;
 constexpr double kAnswer_s = 0.15;
 
-constexpr Object kDeviceType{0x1000, 0}, kConsumerHeartbeat{0x1016, 1}, kProducerHeartbeat{0x1017, 0},
-    kCyclePeriod{0x1006, 0}, kModes{0x6060, 0}, kModesDisplay{0x6061, 0}, kSupportedModes{0x6502, 0},
-    kRatedTorque{0x6076, 0}, kAbortConnection{0x6007, 0}, kIncrements{0x608f, 1}, kTurns{0x608f, 2},
+constexpr Object kDeviceType{0x1000, 0}, kConsumerHeartbeat{0x1016, 1},
+    kProducerHeartbeat{0x1017, 0}, kCyclePeriod{0x1006, 0}, kModes{0x6060, 0},
+    kModesDisplay{0x6061, 0}, kSupportedModes{0x6502, 0}, kRatedTorque{0x6076, 0},
+    kAbortConnection{0x6007, 0}, kIncrements{0x608f, 1}, kTurns{0x608f, 2},
     kInterpolation{0x60c2, 1}, kInterpolationExponent{0x60c2, 2};
 constexpr std::uint32_t kProfile = 402;
 constexpr std::uint32_t kSupportsTorque = 1u << 9;
@@ -33,7 +34,8 @@ std::string hex(std::uint32_t code) {
 
 class Sdo {
  public:
-  Sdo(Conversation& conversation, const SetUp& wanted) : conversation_(conversation), wanted_(wanted) {}
+  Sdo(Conversation& conversation, const SetUp& wanted)
+      : conversation_(conversation), wanted_(wanted) {}
 
   Result<std::uint32_t> read(Object object) {
     return ask(sdo_read(wanted_.node, object), object, SdoReply::Kind::read);
@@ -98,7 +100,8 @@ Result<Found> identify(Sdo& sdo, const SetUp& wanted) {
   if (!type) return tl::unexpected(type.error());
   if ((*type & 0xffff) != kProfile)
     return fail(ExitCode::unavailable, wanted.place + ": this device follows profile " +
-                                           std::to_string(*type & 0xffff) + ", expected 402, a drive");
+                                           std::to_string(*type & 0xffff) +
+                                           ", expected 402, a drive");
   auto modes = sdo.read(kSupportedModes);
   if (!modes) return tl::unexpected(modes.error());
   if ((*modes & kSupportsTorque) == 0)
@@ -113,8 +116,9 @@ Result<Found> identify(Sdo& sdo, const SetUp& wanted) {
   if (!turns) return tl::unexpected(turns.error());
   if (*rated_mNm == 0 || *increments == 0 || *turns == 0)
     return fail(ExitCode::unavailable,
-                wanted.place + ": rated torque (6076) and encoder resolution (608F) must be set in "
-                               "the drive, found 0");
+                wanted.place +
+                    ": rated torque (6076) and encoder resolution (608F) must be set in "
+                    "the drive, found 0");
   return Found{.rated_torque_Nm = 1e-3 * *rated_mNm,
                .counts_per_turn = static_cast<double>(*increments) / *turns};
 }
@@ -180,8 +184,9 @@ Result<void> choose_mode(Sdo& sdo, const SetUp& wanted) {
   auto found = sdo.read(kModesDisplay);
   if (!found) return tl::unexpected(found.error());
   if (*found == kTorqueMode) return {};
-  return fail(ExitCode::unavailable, wanted.place + ": asked for cyclic synchronous torque (mode 10), "
-                                                    "the drive shows mode " +
+  return fail(ExitCode::unavailable, wanted.place +
+                                         ": asked for cyclic synchronous torque (mode 10), "
+                                         "the drive shows mode " +
                                          std::to_string(*found));
 }
 

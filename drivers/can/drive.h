@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "control/core/result.h"
+#include "drivers/can/conversation.h"
 #include "drivers/can/fault_text.h"
 #include "drivers/can/frame.h"
 #include "drivers/can/options.h"
@@ -36,16 +37,6 @@ class Outbox {
   std::size_t size_ = 0;
 };
 
-/// Questions and answers before the loop runs.
-class Conversation {
- public:
-  virtual ~Conversation() = default;
-  virtual void send(const Frame& frame) = 0;
-  /// The next frame that comes within `timeout_s`; none: it is over.
-  virtual std::optional<Frame> next(double timeout_s) = 0;
-  virtual std::int64_t now_ns() = 0;
-};
-
 /// What came with a frame.
 enum class Heard : std::uint8_t {
   nothing,       ///< not of this drive
@@ -56,7 +47,8 @@ enum class Heard : std::uint8_t {
 
 class Drive {
  public:
-  Drive(const DeviceOptions& device, const DriveOptions& options) : device_(device), options_(options) {}
+  Drive(const DeviceOptions& device, const DriveOptions& options)
+      : device_(device), options_(options) {}
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
   virtual ~Drive() = default;
@@ -101,7 +93,9 @@ class Drive {
   double torque_per_effort() const noexcept {
     return options_.counts_per_turn / (2 * std::numbers::pi * options_.counts_per_unit);
   }
-  double max_torque_Nm() const noexcept { return options_.max_effort * std::abs(torque_per_effort()); }
+  double max_torque_Nm() const noexcept {
+    return options_.max_effort * std::abs(torque_per_effort());
+  }
 
   const DriveOptions& options() const noexcept { return options_; }
   /// Where failures are worded.
@@ -111,7 +105,8 @@ class Drive {
 
  protected:
   /// The first failure stands until it is cleared.
-  void fail(std::string_view what, std::string_view word = {}, std::string_view advice = {}) noexcept;
+  void fail(std::string_view what, std::string_view word = {},
+            std::string_view advice = {}) noexcept;
   void measured(double counts, std::int64_t stamp_ns) noexcept {
     counts_ = counts;
     stamp_ns_ = stamp_ns;

@@ -34,7 +34,8 @@ class FaultText {
 
   std::string_view view() const noexcept {
     const Text* text = shown_.load(std::memory_order_acquire);
-    return text == nullptr ? std::string_view{} : std::string_view{text->letters.data(), text->size};
+    return text == nullptr ? std::string_view{}
+                           : std::string_view{text->letters.data(), text->size};
   }
 
  private:

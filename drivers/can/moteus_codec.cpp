@@ -52,7 +52,9 @@ void Writer::begin(bool reads, std::uint16_t which, Format format) noexcept {
 }
 
 Writer& Writer::write(Register which, Format format, double value) noexcept {
-  if (std::isinf(value)) good_ = false;
+  using Single = std::numeric_limits<float>;
+  if (std::isinf(value) || (format == Format::real && std::abs(value) > Single::max()))
+    good_ = false;
   if (!extends(false, number(which), format)) begin(false, number(which), format);
   const double step = step_of(number(which), format);
   const auto keep = [&](auto raw) {
@@ -137,8 +139,7 @@ void add(Writer& writer, const Query& query) noexcept {
 std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command,
                                     const std::optional<Query>& query) noexcept {
   if (!std::isfinite(command.torque_Nm) || !std::isfinite(command.maximum_torque_Nm) ||
-      !std::isfinite(command.watchdog_s) ||
-      std::abs(command.torque_Nm) > std::numeric_limits<float>::max())
+      !std::isfinite(command.watchdog_s))
     return std::nullopt;
   Writer writer(to_servo(address, query.has_value()));
   writer.write(Register::mode, Format::int8, static_cast<double>(Mode::position))
@@ -154,6 +155,25 @@ std::optional<Frame> torque_command(const Address& address, const TorqueCommand&
     writer.write(Register::ignore_position_bounds, Format::int8, 1);
   if (query) add(writer, *query);
   return writer.finish();
+}
+
+TorqueCommands::TorqueCommands(const Address& address, const TorqueCommand& settings,
+                               bool asks) noexcept {
+  TorqueCommand command = settings;
+  command.torque_Nm = 0;
+  for (int tag = 0; tag < 4; ++tag) {
+    const auto query = asks ? std::optional(Query{.tag = tag}) : std::nullopt;
+    frames_[static_cast<std::size_t>(tag)] = torque_command(address, command, query);
+  }
+}
+
+std::optional<Frame> TorqueCommands::with(double torque_Nm, int tag) const noexcept {
+  // Behind the mode (3 bytes), position and velocity (4), and the head of its own subframe (2).
+  constexpr std::size_t kTorqueAt = 9;
+  std::optional<Frame> frame = frames_[static_cast<std::size_t>(tag & 3)];
+  if (!(std::abs(torque_Nm) <= std::numeric_limits<float>::max())) return std::nullopt;
+  if (frame) put(*frame, kTorqueAt, static_cast<float>(torque_Nm));
+  return frame;
 }
 
 Frame stop(const Address& address, const std::optional<Query>& query) noexcept {

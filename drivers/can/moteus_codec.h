@@ -66,7 +66,7 @@ class Writer {
  public:
   explicit Writer(const Frame& header) noexcept : frame_(header) {}
 
-  /// NaN is what the servo takes for "none". Infinite values are refused.
+  /// NaN is what the servo takes for "none". Values that are infinite, or too large for a single, are refused.
   Writer& write(Register which, Format format, double value) noexcept;
   Writer& read(Register which, Format format) noexcept;
 
@@ -112,10 +112,21 @@ struct TorqueCommand {
   double watchdog_s = 0;
   bool ignore_position_bounds = false;
 };
-/// At most 48 bytes; the reply has at most 24 where only a tag is asked for. Without a query there is none. Nothing: not
+/// At most 48 bytes, 64 while settings are asked for; the reply has at most 24 where only a tag is asked for. Without a query there is none. Nothing: not
 /// finite.
 std::optional<Frame> torque_command(const Address& address, const TorqueCommand& command,
                                     const std::optional<Query>& query) noexcept;
+/// The commands of one drive whose torque and tag alone change: made once, so that a tick only puts the torque in.
+class TorqueCommands {
+ public:
+  /// `asks`: each has a question, of its tag.
+  TorqueCommands(const Address& address, const TorqueCommand& settings, bool asks) noexcept;
+  /// As torque_command() makes it. Nothing: not finite, or the settings are not.
+  std::optional<Frame> with(double torque_Nm, int tag) const noexcept;
+
+ private:
+  std::array<std::optional<Frame>, 4> frames_{};
+};
 Frame stop(const Address& address, const std::optional<Query>& query) noexcept;
 Frame ask(const Address& address, const Query& query) noexcept;
 /// Asks which register map the servo has, and its serial number.

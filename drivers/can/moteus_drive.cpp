@@ -1,5 +1,6 @@
 #include "drivers/can/moteus_drive.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hapticd::can {
@@ -15,6 +16,11 @@ bool is(const std::optional<double>& value, Mode mode) noexcept {
   return value && *value == static_cast<double>(mode);
 }
 
+/// Of a register that holds a code: -1 where it is none.
+int code_of(double value) noexcept {
+  return value >= 0 && value <= 0xffff ? static_cast<int>(value) : -1;
+}
+
 /// What the wire carries comes back the same, but for rounding to a float.
 bool as_asked(const std::optional<double>& found, double asked) noexcept {
   return found && std::abs(*found - asked) <= 1e-6 * std::abs(asked);
@@ -22,9 +28,23 @@ bool as_asked(const std::optional<double>& found, double asked) noexcept {
 
 }  // namespace
 
+MoteusDrive::MoteusDrive(const DeviceOptions& device, const DriveOptions& options)
+    : Drive(device, options),
+      address_{.servo = options.node, .source = device.source, .prefix = device.prefix},
+      commands_(address_, settings(), !in_phase()) {}
+
+/// What the servo is told with each torque.
+moteus::TorqueCommand MoteusDrive::settings() const noexcept {
+  return {.torque_Nm = 0,
+          .maximum_torque_Nm = max_torque_Nm(),
+          .watchdog_s = device_.watchdog_s,
+          .ignore_position_bounds = device_.ignore_position_bounds};
+}
+
 std::vector<Filter> MoteusDrive::filters() const {
   const std::uint32_t prefix = static_cast<std::uint32_t>(address_.prefix) << 16;
-  const std::uint32_t reply = prefix | static_cast<std::uint32_t>(address_.servo) << 8 | address_.source;
+  const std::uint32_t reply =
+      prefix | static_cast<std::uint32_t>(address_.servo) << 8 | address_.source;
   const std::uint32_t command = prefix | address_.servo;
   std::vector<Filter> filters{{.id = reply, .mask = 0x1fffffff, .extended = reply >= 0x800},
                               // commands of any other host
@@ -103,20 +123,22 @@ Heard MoteusDrive::take(const Frame& frame, std::int64_t stamp_ns) noexcept {
 
 void MoteusDrive::hear(const moteus::Reply& reply) noexcept {
   if (!reply.mode || !reply.fault) return;
-  mode_ = static_cast<int>(*reply.mode);
-  const int code = static_cast<int>(*reply.fault);
+  mode_ = code_of(*reply.mode);
+  const int code = code_of(*reply.fault);
   limits_ = moteus::is_limit(code) ? static_cast<std::uint16_t>(1u << (code - 96)) : 0;
-  faults_ = is(reply.mode, Mode::fault) ? static_cast<std::uint32_t>(code) : 0;
+  faults_ = is(reply.mode, Mode::fault) ? static_cast<std::uint32_t>(std::max(code, 0)) : 0;
   if (stage_ == Stage::off || stage_ == Stage::stopping) return;
-  if (is(reply.mode, Mode::fault)) return fail("the servo reports a fault", moteus::fault_word(code));
+  if (is(reply.mode, Mode::fault))
+    return fail("the servo reports a fault", moteus::fault_word(code));
   if (is(reply.mode, Mode::timeout)) return fail("the servo's watchdog expired");
   if (stage_ == Stage::starting) return hear_starting(reply);
   if (mode_ != kModePosition)
     fail("the servo left its torque mode: it restarted, or somebody stopped it");
 }
 
-/// Running, and with the settings that were asked for.
+/// Running, and with the settings that were asked for. It may be to stop by now.
 void MoteusDrive::hear_starting(const moteus::Reply& reply) noexcept {
+  if (!arm_wanted_ || failed()) return;
   if (mode_ != kModePosition || !reply.maximum_torque || !reply.watchdog) return;
   if (!as_asked(reply.watchdog, device_.watchdog_s))
     return fail("the servo has another watchdog time than it was told");
@@ -138,12 +160,12 @@ void MoteusDrive::command(double torque_Nm, Outbox& outbox) noexcept {
     case Stage::stopping:  // first of all: what may still be queued then meets a servo that is off
       if (mode_ == static_cast<int>(Mode::stopped) && now_ns_ > since_ns_) {
         go(Stage::starting);
-        return torque(0, outbox);
+        return start(outbox);
       }
       outbox.add(moteus::stop(address_, query_with_command()));
       break;
     case Stage::starting:
-      torque(0, outbox);
+      start(outbox);
       break;
     case Stage::armed:
       return torque(torque_Nm, outbox);
@@ -152,13 +174,13 @@ void MoteusDrive::command(double torque_Nm, Outbox& outbox) noexcept {
     fail("the servo did not start within two seconds", {}, "is it calibrated?");
 }
 
+void MoteusDrive::start(Outbox& outbox) noexcept {
+  outbox.add(moteus::torque_command(address_, settings(), query_with_command()));
+}
+
 void MoteusDrive::torque(double torque_Nm, Outbox& outbox) noexcept {
-  const auto frame = moteus::torque_command(address_,
-                                            {.torque_Nm = torque_Nm,
-                                             .maximum_torque_Nm = max_torque_Nm(),
-                                             .watchdog_s = device_.watchdog_s,
-                                             .ignore_position_bounds = device_.ignore_position_bounds},
-                                            query_with_command());
+  const auto query = query_with_command();
+  const auto frame = commands_.with(torque_Nm, query ? query->tag : 0);
   outbox.add(frame);
   carried_Nm_ = frame ? static_cast<double>(static_cast<float>(torque_Nm)) : 0;
 }

@@ -8,9 +8,7 @@ namespace hapticd::can {
 
 class MoteusDrive final : public Drive {
  public:
-  MoteusDrive(const DeviceOptions& device, const DriveOptions& options)
-      : Drive(device, options),
-        address_{.servo = options.node, .source = device.source, .prefix = device.prefix} {}
+  MoteusDrive(const DeviceOptions& device, const DriveOptions& options);
 
   std::vector<Filter> filters() const override;
   Result<std::string> connect(Conversation& conversation) override;
@@ -27,16 +25,20 @@ class MoteusDrive final : public Drive {
   bool of_another_master(const Frame& frame) const noexcept;
   void hear(const moteus::Reply& reply) noexcept;
   void hear_starting(const moteus::Reply& reply) noexcept;
+  /// No torque yet, and the settings are asked for.
+  void start(Outbox& outbox) noexcept;
   void torque(double torque_Nm, Outbox& outbox) noexcept;
   bool in_phase() const noexcept { return device_.timing == drivers::Timing::in_phase; }
   moteus::Query next_query() noexcept;
   std::optional<moteus::Query> query_with_command() noexcept;
+  moteus::TorqueCommand settings() const noexcept;
 
   const moteus::Address address_;
   Stage stage_ = Stage::off;
   std::int64_t since_ns_ = 0;  ///< in this stage
   int tag_ = 0;                ///< of the last question
   int mode_ = -1;              ///< as last heard
+  const moteus::TorqueCommands commands_;
 };
 
 }  // namespace hapticd::can

@@ -35,18 +35,18 @@ class Reader {
     const auto one = take(1);
     return good_ ? one[0] : std::uint8_t{0};
   }
-  /// Seven bits a byte, the lowest first; five bytes at most.
-  std::uint32_t varuint() noexcept {
-    std::uint32_t value = 0;
+  /// Seven bits a byte, the lowest first; five bytes at most. Wide, so that no register wraps to another.
+  std::uint64_t varuint() noexcept {
+    std::uint64_t value = 0;
     for (int shift = 0; shift < 35; shift += 7) {
       const std::uint8_t next = byte();
-      value |= static_cast<std::uint32_t>(next & 0x7f) << shift;
+      value |= static_cast<std::uint64_t>(next & 0x7f) << shift;
       if ((next & 0x80) == 0) return value;
     }
     good_ = false;
     return 0;
   }
-  double value(std::uint32_t which, Format format) noexcept {
+  double value(std::uint64_t which, Format format) noexcept {
     const auto bytes = take(size_of(format));
     if (!good_) return 0;
     const double step = step_of(static_cast<std::uint16_t>(which), format);
@@ -68,7 +68,7 @@ class Reader {
   bool good_ = true;
 };
 
-void store(Reply& reply, std::uint32_t which, double value) noexcept {
+void store(Reply& reply, std::uint64_t which, double value) noexcept {
   if (which > 0xffff) return;
   switch (static_cast<Register>(which)) {
     case Register::mode:
@@ -115,9 +115,9 @@ void store(Reply& reply, std::uint32_t which, double value) noexcept {
 /// The values of one subframe; false: the payload ends within it.
 bool take_values(Reader& reader, std::uint8_t head, Reply& reply) noexcept {
   const auto format = static_cast<Format>((head >> 2) & 3);
-  const std::uint32_t count = (head & 3) != 0 ? head & 3 : reader.varuint();
-  const std::uint32_t first = reader.varuint();
-  for (std::uint32_t i = 0; i < count && reader.good(); ++i) {
+  const std::uint64_t count = (head & 3) != 0 ? head & 3u : reader.varuint();
+  const std::uint64_t first = reader.varuint();
+  for (std::uint64_t i = 0; i < count && reader.good(); ++i) {
     const double value = reader.value(first + i, format);
     if (reader.good()) store(reply, first + i, value);
   }
@@ -133,7 +133,8 @@ Decoded decode(std::span<const std::uint8_t> payload) noexcept {
     const std::uint8_t head = reader.byte();
     if (head == kNop) continue;
     if (head == kWriteError || head == kReadError) {
-      const RegisterError error{head == kWriteError, reader.varuint(), reader.varuint()};
+      const RegisterError error{head == kWriteError, static_cast<std::uint32_t>(reader.varuint()),
+                                static_cast<std::uint32_t>(reader.varuint())};
       if (!reader.good()) break;
       decoded.status = Status::error_subframe;
       if (!decoded.error) decoded.error = error;

@@ -46,6 +46,12 @@ Decoded finite_pair(std::span<const std::uint8_t> bytes) noexcept {
   return {Received::ok, Pair{a, b}};
 }
 
+Decoded temperatures_of(std::span<const std::uint8_t> bytes) noexcept {
+  const float fet = get<float>(bytes, 0), motor = get<float>(bytes, 4);
+  if (std::isinf(fet) || std::isinf(motor)) return {Received::non_finite, {}};
+  return {Received::ok, Temperatures{fet, motor}};
+}
+
 Version version_of(std::span<const std::uint8_t> b) noexcept {
   return {.protocol = b[0],
           .hardware = {b[1], b[2], b[3]},
@@ -103,7 +109,7 @@ Decoded message_of(Command command, std::span<const std::uint8_t> b) noexcept {
     case Command::get_iq:
       return finite_pair<Currents>(b);
     case Command::get_temperature:
-      return {Received::ok, Temperatures{get<float>(b, 0), get<float>(b, 4)}};
+      return temperatures_of(b);
     case Command::get_bus_voltage_current:
       return finite_pair<Supply>(b);
     case Command::get_torques:

@@ -11,6 +11,8 @@ constexpr std::uint32_t kWatchdogExpired = 1u << 24;
 constexpr std::uint8_t kBusy = 1;
 /// A drive has this long to enter closed loop, beside the time to its next heartbeat.
 constexpr std::int64_t kEnter_ns = 1'000'000'000;
+/// An answer to a question outside of the loop's samples.
+constexpr std::int64_t kAnswer_ns = 100'000'000;
 /// How long the host is silent, in watchdog times.
 constexpr double kSilence = 1.5;
 
@@ -44,10 +46,10 @@ Result<std::string> OdriveDrive::connect(Conversation& conversation) {
   auto version = find(conversation);
   if (!version) return tl::unexpected(version.error());
   if (version->firmware[0] != 0 || version->firmware[1] != 6) {
-    return hapticd::fail(ExitCode::unavailable,
-                         place_of(options_) + ": this ODrive has firmware " +
-                             dotted(version->firmware) +
-                             ", expected 0.6: others have other error bits and messages; update it");
+    return hapticd::fail(
+        ExitCode::unavailable,
+        place_of(options_) + ": this ODrive has firmware " + dotted(version->firmware) +
+            ", expected 0.6: others have other error bits and messages; update it");
   }
   if (auto heard = listen(conversation); !heard) return tl::unexpected(heard.error());
   watchdog_proved_ = false;
@@ -131,6 +133,10 @@ Heard OdriveDrive::take(const Frame& frame, std::int64_t stamp_ns) noexcept {
   }
   if (const auto* heartbeat = std::get_if<odrive::Heartbeat>(&decoded.message))
     hear(*heartbeat, stamp_ns);
+  if (const auto* errors = std::get_if<odrive::Errors>(&decoded.message)) {
+    errors_ = *errors;
+    errors_ns_ = stamp_ns;
+  }
   const auto* estimates = std::get_if<odrive::Estimates>(&decoded.message);
   if (estimates == nullptr) return Heard::something;
   measured(options_.counts_per_turn * static_cast<double>(estimates->position_turns), stamp_ns);
@@ -165,7 +171,7 @@ void OdriveDrive::go(Stage stage) noexcept {
   stage_ = stage;
   since_ns_ = now_ns_;
   armed_ = stage == Stage::armed;
-  silent_ = stage == Stage::prove;
+  silent_ = stage == Stage::silence || stage == Stage::ask;
 }
 
 void OdriveDrive::command(double torque_Nm, Outbox& outbox) noexcept {
@@ -179,8 +185,11 @@ void OdriveDrive::command(double torque_Nm, Outbox& outbox) noexcept {
       return prepare(outbox);
     case Stage::enter:
       return enter(outbox);
-    case Stage::prove:
-      return prove();
+    case Stage::silence:
+      if (now_ns_ - since_ns_ >= ns(kSilence * device_.watchdog_s)) go(Stage::ask);
+      return;
+    case Stage::ask:
+      return ask(outbox);
     case Stage::armed:
       return drive(torque_Nm, outbox);
   }
@@ -204,22 +213,22 @@ void OdriveDrive::enter(Outbox& outbox) noexcept {
     return fail("the drive would not enter closed loop", first_word(heartbeat_.error));
   if (heard_since(since_ns_) && closed_loop() && heartbeat_.procedure_result != kBusy) {
     knows_position_ = true;
-    return go(watchdog_proved_ ? Stage::armed : Stage::prove);
+    return go(watchdog_proved_ ? Stage::armed : Stage::silence);
   }
   if (now_ns_ - since_ns_ > kEnter_ns + heartbeat_limit_ns())
     fail("the drive did not enter closed loop within a second",
          "is it calibrated (axis0.requested_state = FULL_CALIBRATION_SEQUENCE)?");
 }
 
-/// Silent until the watchdog must have expired; then the next heartbeat has to say that it did.
-void OdriveDrive::prove() noexcept {
-  const std::int64_t expired_ns = since_ns_ + ns(kSilence * device_.watchdog_s);
-  if (now_ns_ < expired_ns) return;
-  if (!heard_since(expired_ns)) {
-    if (now_ns_ - expired_ns > heartbeat_limit_ns()) fail("the drive sends no heartbeat any more");
-    return;
+/// The host was silent for so long that the watchdog must have expired: the drive has to say so itself, and at once, since
+/// its next heartbeat may come much later.
+void OdriveDrive::ask(Outbox& outbox) noexcept {
+  if (errors_ns_ <= since_ns_) {
+    if (now_ns_ - since_ns_ > kAnswer_ns)
+      return fail("the drive does not tell its errors (Get_Error)");
+    return outbox.add(odrive::request(options_.node, odrive::Command::get_error));
   }
-  if (closed_loop() || (heartbeat_.error & kWatchdogExpired) == 0) {
+  if (((errors_.active | errors_.disarm_reason) & kWatchdogExpired) == 0) {
     return fail("left alone for 1.5 x can.watchdog_s, the drive did not go off by its watchdog", {},
                 "set axis0.config.enable_watchdog = True and watchdog_timeout = can.watchdog_s");
   }

@@ -16,7 +16,7 @@ class OdriveDrive final : public Drive {
   Heard take(const Frame& frame, std::int64_t stamp_ns) noexcept override;
 
  private:
-  enum class Stage : std::uint8_t { off, idle, prepare, enter, prove, armed };
+  enum class Stage : std::uint8_t { off, idle, prepare, enter, silence, ask, armed };
 
   void command(double torque_Nm, Outbox& outbox) noexcept override;
   void stop(bool must, Outbox& outbox) noexcept override;
@@ -24,7 +24,7 @@ class OdriveDrive final : public Drive {
   void go(Stage stage) noexcept;
   void prepare(Outbox& outbox) noexcept;
   void enter(Outbox& outbox) noexcept;
-  void prove() noexcept;
+  void ask(Outbox& outbox) noexcept;
   void drive(double torque_Nm, Outbox& outbox) noexcept;
   void hear(const odrive::Heartbeat& heartbeat, std::int64_t stamp_ns) noexcept;
   /// A heartbeat that was sent after this time, and after what the tick of that time sent.
@@ -39,6 +39,8 @@ class OdriveDrive final : public Drive {
   std::int64_t since_ns_ = 0;  ///< in this stage
   odrive::Heartbeat heartbeat_{};
   std::int64_t heartbeat_ns_ = 0;
+  odrive::Errors errors_{};
+  std::int64_t errors_ns_ = 0;
   bool watchdog_proved_ = false;
 };
 

@@ -39,15 +39,14 @@ std::string problem_of(int descriptor, const SocketOptions& options) {
   ifreq request = request_of(name);
   if (name.size() >= sizeof(request.ifr_name) || ::ioctl(descriptor, SIOCGIFHWADDR, &request) != 0)
     return "there is no interface " + name + " on this machine (`ip link` lists them)";
-  if (request.ifr_hwaddr.sa_family != ARPHRD_CAN)
-    return name + " is no CAN interface";
+  if (request.ifr_hwaddr.sa_family != ARPHRD_CAN) return name + " is no CAN interface";
   if (::ioctl(descriptor, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0)
     return name + " is switched off; switch it on: ip link set " + name +
            " up type can bitrate 1000000";
   if (options.fd && ::ioctl(descriptor, SIOCGIFMTU, &request) == 0 &&
       request.ifr_mtu < static_cast<int>(CANFD_MTU))
-    return name + " carries classic frames only and these drives speak CAN FD: ip link set " + name +
-           " down, then up type can bitrate 1000000 dbitrate 5000000 fd on";
+    return name + " carries classic frames only and these drives speak CAN FD: ip link set " +
+           name + " down, then up type can bitrate 1000000 dbitrate 5000000 fd on";
   const auto frames = static_cast<int>(options.frames_per_tick);
   if (::ioctl(descriptor, SIOCGIFTXQLEN, &request) == 0 && request.ifr_qlen > 0 &&
       request.ifr_qlen < frames)
@@ -61,13 +60,13 @@ void set_filters(int descriptor, const SocketOptions& options) {
   std::vector<can_filter> filters;
   for (const Filter& filter : options.filters) {
     const canid_t kind = filter.extended ? CAN_EFF_FLAG : 0;
-    filters.push_back({.can_id = filter.id | kind,
-                       .can_mask = filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
+    filters.push_back(
+        {.can_id = filter.id | kind, .can_mask = filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
   }
   ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                static_cast<socklen_t>(filters.size() * sizeof(can_filter)));
-  const can_err_mask_t errors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_ACK |
-                                CAN_ERR_TX_TIMEOUT;
+  const can_err_mask_t errors =
+      CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_ACK | CAN_ERR_TX_TIMEOUT;
   ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
   const int on = 1;
   ::setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
@@ -102,6 +101,14 @@ std::int64_t ns_of(const timespec& time) noexcept {
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
+/// The kernel stamps with the clock of the day, which may be set at any time.
+std::int64_t day_ahead_ns() noexcept {
+  timespec day, loop;
+  ::clock_gettime(CLOCK_REALTIME, &day);
+  ::clock_gettime(CLOCK_MONOTONIC, &loop);
+  return ns_of(day) - ns_of(loop);
+}
+
 }  // namespace
 
 Result<Socket> Socket::open(const SocketOptions& options) {
@@ -117,8 +124,7 @@ Result<Socket> Socket::open(const SocketOptions& options) {
   if (const std::string problem = problem_of(descriptor, options); !problem.empty())
     return unavailable(problem);
   const int on = 1;
-  if (options.fd &&
-      ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0)
+  if (options.fd && ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0)
     return unavailable("this kernel's CAN sockets know no FD frames");
   set_filters(descriptor, options);
   sockaddr_can address{};
@@ -129,7 +135,9 @@ Result<Socket> Socket::open(const SocketOptions& options) {
   return socket;
 }
 
-Socket::Socket(Socket&& other) noexcept { *this = std::move(other); }
+Socket::Socket(Socket&& other) noexcept {
+  *this = std::move(other);
+}
 
 Socket& Socket::operator=(Socket&& other) noexcept {
   if (this == &other) return *this;
@@ -224,7 +232,7 @@ void Socket::read_control(msghdr& header, Received& received) noexcept {
       if (const std::int64_t hardware_ns = ns_of(stamps.ts[2]); hardware_ns != 0)
         received.stamp_ns = hardware_.bring(hardware_ns, received.stamp_ns);
       else if (const std::int64_t software_ns = ns_of(stamps.ts[0]); software_ns != 0)
-        received.stamp_ns = software_.bring(software_ns, received.stamp_ns);
+        received.stamp_ns = std::min(received.stamp_ns, software_ns - day_ahead_ns());
     }
   }
 }
@@ -236,6 +244,7 @@ void Socket::note(int error) noexcept {
     case EINTR:
       return;
     case ENETDOWN:
+      hardware_ = {};  // an adapter's clock may begin anew
       return worsen(Trouble::down);
     default:  // ENXIO, ENODEV, EPIPE, ...
       return worsen(Trouble::gone);

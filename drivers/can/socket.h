@@ -42,8 +42,9 @@ struct SocketOptions {
 
 struct Received {
   Frame frame{};
-  std::int64_t stamp_ns = 0;  ///< when it came: by adapter or kernel if they stamp, else when it was taken
-  bool local = false;         ///< sent by another program on this machine
+  std::int64_t stamp_ns =
+      0;               ///< when it came: by adapter or kernel if they stamp, else when it was taken
+  bool local = false;  ///< sent by another program on this machine
 };
 
 struct SocketCounters {
@@ -90,7 +91,7 @@ class Socket {
   Trouble trouble_ = Trouble::none;
   SocketCounters counters_{};
   std::uint32_t kernel_lost_ = 0;
-  StampClock hardware_{}, software_{};
+  StampClock hardware_{};
   std::array<Received, kMost> received_{};
 };
 

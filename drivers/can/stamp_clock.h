@@ -17,7 +17,8 @@ class StampClock {
       known_ = true;
     } else {
       constexpr std::int64_t kDrift = 10'000;  // 100 ppm
-      offset_ns_ = std::min(offset_ns, offset_ns_ + std::max<std::int64_t>(0, seen_ns - last_ns_) / kDrift);
+      offset_ns_ =
+          std::min(offset_ns, offset_ns_ + std::max<std::int64_t>(0, seen_ns - last_ns_) / kDrift);
     }
     last_ns_ = seen_ns;
     return stamp_ns + offset_ns_;

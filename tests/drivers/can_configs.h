@@ -50,11 +50,11 @@ inline std::string three_axes(const Bus& bus) {
   std::string axes, truth;
   const char* names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
-    truth += std::string(i > 0 ? ", " : "") + "{mass_kg: 0.05, damping_Ns_m: 1.37, position_m: 0.002}";
-    axes += std::string("\n      - {name: ") + names[i] +
-            ", encoder: {counts_per_m: 327680" + (i == 1 ? ", reversed: true" : "") +
-            "}, can: {node: " + std::to_string(7 - 2 * i) + ", counts_per_turn: 16384" +
-            (i == 2 ? ", interface: can1" : "") +
+    truth +=
+        std::string(i > 0 ? ", " : "") + "{mass_kg: 0.05, damping_Ns_m: 1.37, position_m: 0.002}";
+    axes += std::string("\n      - {name: ") + names[i] + ", encoder: {counts_per_m: 327680" +
+            (i == 1 ? ", reversed: true" : "") + "}, can: {node: " + std::to_string(7 - 2 * i) +
+            ", counts_per_turn: 16384" + (i == 2 ? ", interface: can1" : "") +
             "}, actuator: {max_force_N: 8}, model: {mass_kg: 0.05, damping_Ns_m: 1.37}}";
   }
   return std::string("version: 1\ndevices:\n  - name: arm\n    driver: ") + bus.driver +

@@ -64,8 +64,9 @@ class CanFaults : public testing::TestWithParam<Bus> {
  protected:
   /// `break_it`, then no force from `ticks` later on, a fault whose text has `words`; `mend_it`, and forces come back
   /// from nothing.
-  void expect_fault(const std::function<void(CanRig&)>& break_it, int ticks, const std::string& words,
-                    const std::function<void(CanRig&)>& mend_it = [](CanRig&) {}) {
+  void expect_fault(
+      const std::function<void(CanRig&)>& break_it, int ticks, const std::string& words,
+      const std::function<void(CanRig&)>& mend_it = [](CanRig&) {}) {
     const auto rig = pressing(GetParam());
     break_it(*rig);
     for (int i = 0; i < ticks; ++i) rig->tick();
@@ -179,9 +180,8 @@ TEST_P(CanFaults, ABusThatLosesEverything) {
 /// Free-running samples of a slow adapter cannot be told from young ones: nothing asked for them.
 TEST_P(CanFaults, AnswersThatAreLateAreNone) {
   if (std::string(GetParam().timing) == "free_running") return;
-  expect_fault([](CanRig& rig) { rig.drives().bus("can0").options().delay_s = 1.2e-3; },
-               kStale + 5, "no sample",
-               [](CanRig& rig) { rig.drives().bus("can0").options().delay_s = 0; });
+  expect_fault([](CanRig& rig) { rig.drives().bus("can0").options().delay_s = 1.2e-3; }, kStale + 5,
+               "no sample", [](CanRig& rig) { rig.drives().bus("can0").options().delay_s = 0; });
 }
 
 TEST_P(CanFaults, AnotherMaster) {
@@ -200,8 +200,8 @@ TEST_P(CanFaults, BusOff) {
 TEST_P(CanFaults, NobodyAcknowledges) {
   expect_fault(
       [](CanRig& rig) {
-        rig.drives().bus("can0").inject(frame_of(CAN_ERR_FLAG | CAN_ERR_ACK, {0, 0, 0, 0, 0, 0, 0, 0}),
-                                        rig.now_ns());
+        rig.drives().bus("can0").inject(
+            frame_of(CAN_ERR_FLAG | CAN_ERR_ACK, {0, 0, 0, 0, 0, 0, 0, 0}), rig.now_ns());
       },
       3, "can0: nobody acknowledges");
 }
@@ -216,7 +216,8 @@ TEST_P(CanFaults, ADriveThatFindsAFault) {
   rig->drives().drive(0).fail(code, rig->now_ns());
   EXPECT_EQ(rig->motor_Nm(), 0) << "the drive is off by itself";
   // An ODrive tells with its next heartbeat.
-  ASSERT_TRUE(rig->run_until([&] { return rig->mode() == Mode::fault; }, is(bus, "odrive") ? 105 : 3));
+  ASSERT_TRUE(
+      rig->run_until([&] { return rig->mode() == Mode::fault; }, is(bus, "odrive") ? 105 : 3));
   EXPECT_NE(rig->fault_text().find(words), std::string::npos) << rig->fault_text();
   EXPECT_NE(rig->fault_text().find("arm.x (node 3 on can0)"), std::string::npos);
   expect_calm_recovery(*rig);

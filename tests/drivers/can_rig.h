@@ -37,6 +37,7 @@ struct Emulation {
   sim::can::OdriveOptions odrive{};
   sim::can::MoteusOptions moteus{};
   sim::can::Cia402Options cia402{};
+  double cia402_counts_factor = 1;  ///< of the config's counts per turn
   sim::can::WireOptions wire{};
   double step_s = 250e-6;
 };
@@ -112,7 +113,8 @@ class EmulatedRig {
 
   static std::unique_ptr<sim::can::Drive> make_drive(const can::DeviceOptions& device,
                                                      const can::DriveOptions& drive,
-                                                     const Emulation& given, std::int64_t start_ns) {
+                                                     const Emulation& given,
+                                                     std::int64_t start_ns) {
     switch (device.protocol) {
       case can::Protocol::odrive: {
         sim::can::OdriveOptions options = given.odrive;
@@ -131,7 +133,7 @@ class EmulatedRig {
       case can::Protocol::cia402: {
         sim::can::Cia402Options options = given.cia402;
         options.node = drive.node;
-        options.counts_per_rev = drive.counts_per_turn;
+        options.counts_per_rev = given.cia402_counts_factor * drive.counts_per_turn;
         return std::make_unique<sim::can::Cia402Drive>(options, start_ns);
       }
     }
@@ -216,6 +218,26 @@ class CanRig {
         3000);
   }
 
+  // The parts of a tick, for who calls the device himself.
+  drivers::TickTime begin_tick() {
+    pass_until(next_start_ns_);
+    return {.tick = ++tick_,
+            .start_ns = next_start_ns_,
+            .deadline_ns = next_start_ns_ + period_ns_ / 2};
+  }
+  void pass(std::int64_t duration_ns) { pass_until(now_ns_ + duration_ns); }
+  void end_tick() {
+    next_start_ns_ += period_ns_;
+    pass_until(next_start_ns_ - 1);
+  }
+  /// The host's end of can0, for who speaks without a device.
+  can::Socket& socket() {
+    if (!socket_)
+      socket_ = std::make_unique<can::Socket>(can::Socket::of(::dup(drives_.near_end("can0"))));
+    return *socket_;
+  }
+  can::Host& host() { return host_; }
+
   double motor_Nm(std::size_t axis = 0) { return drives_.drive(axis).torque_Nm(); }
   control::Mode mode() const { return cycle_.output().mode; }
   std::string fault_text() const { return std::string(device_.fault_text()); }
@@ -277,8 +299,8 @@ class CanRig {
     void request(const drivers::TickTime& time) noexcept override { rig_.device_.request(time); }
     drivers::Collected collect(std::span<AxisSample> axes, Aux& aux) noexcept override {
       const auto collected = rig_.device_.collect(axes, aux);
-      rig_.waiting_ = collected == drivers::Collected::waiting &&
-                      rig_.now_ns_ < rig_.input.time.deadline_ns;
+      rig_.waiting_ =
+          collected == drivers::Collected::waiting && rig_.now_ns_ < rig_.input.time.deadline_ns;
       return collected;
     }
     int wait_fd() const noexcept override { return rig_.device_.wait_fd(); }
@@ -306,6 +328,7 @@ class CanRig {
   config::Compiled compiled_;
   EmulatedRig drives_;
   VirtualHost host_;
+  std::unique_ptr<can::Socket> socket_;
   can::CanDevice device_;
   LoopEnd loop_end_;
   daemon::Cycle cycle_;

@@ -35,7 +35,7 @@ TEST_P(CanSeam, ArmsAndHoldsAHandOnAWall) {
   CanRig rig(wall_on(GetParam()), usual());
   const auto info = rig.connect();
   ASSERT_TRUE(info) << info.error().text;
-  EXPECT_NE(info->lock_name.find("can0-3"), std::string::npos);
+  EXPECT_EQ(rig.device().lock_names(), std::vector<std::string>{"can-can0-3"});
   for (int i = 0; i < 50; ++i) {
     EXPECT_EQ(rig.tick().mode, Mode::idle);
     EXPECT_EQ(rig.motor_Nm(), 0);
@@ -76,6 +76,19 @@ TEST_P(CanSeam, LeavesTheDrivesOffWhenItDisconnects) {
   rig.device().disconnect();
   for (const std::int64_t later_ns : {0, 2'000'000}) rig.drives().advance(rig.now_ns() + later_ns);
   EXPECT_FALSE(rig.drives().drive(0).enabled());
+}
+
+/// A drive that gives less than it was asked for says so, for the record.
+TEST_P(CanSeam, ALimiterOfTheDriveIsSeen) {
+  if (std::string(GetParam().driver) == "odrive") return;  // its protocol names none
+  Emulation weak = usual();
+  weak.moteus.max_torque_Nm = weak.cia402.max_torque_Nm = 0.004;  // half a newton at the axis
+  CanRig rig(wall_on(GetParam()), weak);
+  ASSERT_TRUE(rig.connect());
+  ASSERT_TRUE(rig.enable()) << rig.fault_text();
+  EXPECT_EQ(rig.sample().drive_limits, 0);
+  ASSERT_TRUE(rig.run_until([&] { return rig.sample().drive_limits != 0; }, 1000));
+  EXPECT_EQ(rig.mode(), Mode::enabled) << "no fault";
 }
 
 /// What is told of a sample is what it is: counts of the axis, when it came, how old it is.

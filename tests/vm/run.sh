@@ -73,7 +73,7 @@ must_not_pass 33 'hapticd-vm: passed, 0 checks'
 
 # Why each option is there: README.md. Never KVM, not even as a choice.
 code=0
-timeout 300 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -icount shift=1,sleep=off \
+timeout 300 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -icount shift=0,sleep=off \
   -rtc base=2026-01-01T00:00:00,clock=vm -seed 1 -nographic -no-reboot -nodefaults -serial stdio -monitor none \
   -device isa-debug-exit,iobase=0xf4,iosize=0x04 \
   -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb \

@@ -83,12 +83,14 @@ int missed_ticks(double hold_s, double period_s) {
 /// as it is.
 void refuse_varying_latency(const std::vector<DeviceAssumption>& assumed, const Tied& devices,
                             PassiveAnswer& answer) {
-  const bool varies = std::ranges::any_of(
-      devices, [&](std::size_t d) { return assumed[d].latency_varies && assumed[d].latency_s > 0; });
+  const bool varies = std::ranges::any_of(devices, [&](std::size_t d) {
+    return assumed[d].latency_varies && assumed[d].latency_s > 0;
+  });
   if (!answer.proved || !varies || answer.theorem == Theorem::any_static_scene_latency) return;
   answer.proved = false;
-  answer.why += "; but that is for samples of one age, and those of this device come now older, "
-                "now younger: a coupling of springs alone is proved for that (Theorem A')";
+  answer.why +=
+      "; but that is for samples of one age, and those of this device come now older, "
+      "now younger: a coupling of springs alone is proved for that (Theorem A')";
 }
 
 PassiveAnswer answer_of(const control::Plan& plan, const std::vector<DeviceAssumption>& assumed,

@@ -97,20 +97,55 @@ TEST(MoteusCodec, TheDriversOwnFramesAreThoseOfTheVectors) {
 TEST(MoteusCodec, ATorqueIsAWholeCommandInEachFrame) {
   const TorqueCommand command{.torque_Nm = 0.25, .maximum_torque_Nm = 1, .watchdog_s = 0.1};
   const std::string sets =
-      "01000a" "02208000" "0d220000803e" "02230000" "0d250000803f" "0d27cdcccc3d" "012b00";
-  const std::string asks = "1100" "1d01" "110f";
+      "01000a"
+      "02208000"
+      "0d220000803e"
+      "02230000"
+      "0d250000803f"
+      "0d27cdcccc3d"
+      "012b00";
+  const std::string asks =
+      "1100"
+      "1d01"
+      "110f";
   const std::string padding = "50505050505050505050";
   EXPECT_EQ(hex(torque_command({}, command, Query{})->payload()), sets + asks + padding);
-  EXPECT_EQ(hex(torque_command({}, command, Query{.tag = 3})->payload()),
-            sets + asks + "1170" "118202" "5050505050");
+  EXPECT_EQ(hex(torque_command({}, command, Query{.tag = 3})->payload()), sets + asks +
+                                                                              "1170"
+                                                                              "118202"
+                                                                              "5050505050");
   TorqueCommand unbounded = command;
   unbounded.ignore_position_bounds = true;
   EXPECT_EQ(hex(torque_command({}, unbounded, Query{.settings = true})->payload()),
-            sets + "012d01" + asks + "1d25" "1d27" "505050");
+            sets + "012d01" + asks +
+                "1d25"
+                "1d27"
+                "505050");
+}
+
+TEST(MoteusCodec, CommandsMadeOnceAreThoseMadeEachTime) {
+  const Address address{.servo = 9, .source = 1, .prefix = 7};
+  TorqueCommand command{
+      .torque_Nm = 0, .maximum_torque_Nm = 3, .watchdog_s = 0.02, .ignore_position_bounds = true};
+  for (const bool asks : {false, true}) {
+    const TorqueCommands commands(address, command, asks);
+    for (int i = 0; i < 40; ++i) {
+      command.torque_Nm = std::ldexp(1 - i, i - 20);
+      const auto query = asks ? std::optional(Query{.tag = i & 3}) : std::nullopt;
+      EXPECT_EQ(commands.with(command.torque_Nm, i & 3), torque_command(address, command, query));
+    }
+    for (const double torque : {std::nan(""), double{INFINITY}, 1e39})
+      EXPECT_FALSE(commands.with(torque, 0));
+  }
 }
 
 TEST(MoteusCodec, AReplySaysWhichQuestionItAnswers) {
-  EXPECT_EQ(decode(bytes("2100" "0a" "2d01" "0000803f")).reply.tag(), 0);
+  EXPECT_EQ(decode(bytes("2100"
+                         "0a"
+                         "2d01"
+                         "0000803f"))
+                .reply.tag(),
+            0);
   EXPECT_EQ(decode(bytes("217007")).reply.tag(), 1);
   EXPECT_EQ(decode(bytes("21820205")).reply.tag(), 2);
   EXPECT_EQ(decode(bytes("21700721820205")).reply.tag(), 3);

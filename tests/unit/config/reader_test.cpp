@@ -140,8 +140,8 @@ TEST(Reader, OnlyTrueAndFalseAreBool) {
 TEST(Reader, WordOfAnEnumerationIsCheckedAndSuggested) {
   expect_error(replaced(kSmall, "guard:", "start: {enable: when_redy}\nguard:"), "15:17",
                "start.enable", {"one of on_command, when_ready", "did you mean 'when_ready'"});
-  expect_error(replaced(kSmall, "driver: sim", "driver: falcon"), "5:13", "devices[0].driver",
-               {"expected sim", "'falcon'"});
+  expect_error(replaced(kSmall, "driver: sim", "driver: odrve"), "5:13", "devices[0].driver",
+               {"expected one of sim, odrive", "did you mean 'odrive'?"});
   expect_error(replaced(kSmall, "- plane:", "- spere:"), "14:5", "scene[0]",
                {"expected one of plane, ", "did you mean 'sphere'?"});
 }

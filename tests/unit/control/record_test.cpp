@@ -20,7 +20,9 @@ TEST(Record, ArraysFollowTheHeaderWithoutOverlap) {
   const RecordLayout layout = build::Program(test::spec_of(3)).plan().record;
   EXPECT_EQ(layout.raw.offset, sizeof(RecordHeader));
   EXPECT_EQ(layout.age_ns.offset, layout.raw.offset + 3 * 8);
-  EXPECT_EQ(layout.freshness.offset, layout.aux.offset + sizeof(Aux));
+  EXPECT_EQ(layout.drive_faults.offset, layout.aux.offset + sizeof(Aux));
+  EXPECT_EQ(layout.drive_limits.offset, layout.drive_faults.offset + 3 * 4);
+  EXPECT_EQ(layout.freshness.offset, layout.drive_limits.offset + 3 * 2);
   EXPECT_EQ(layout.bytes % 8, 0u);
   EXPECT_GE(layout.bytes, layout.freshness.offset + 3);
 }
@@ -31,6 +33,8 @@ TEST(Record, HoldsWhatTheTickSawAndSaid) {
   test::Rig rig(spec);
   rig.enable_at(-0.002);
   rig.samples[1].age_ns = 77;
+  rig.samples[1].drive_faults = 0x01020304;
+  rig.samples[1].drive_limits = 0x0506;
   rig.input.unproven = true;
   rig.samples[0].freshness = rig.samples[1].freshness = Freshness::fresh;
   const TickOutput output = control::step(rig.program.plan(), rig.program.state(), rig.input);
@@ -49,6 +53,8 @@ TEST(Record, HoldsWhatTheTickSawAndSaid) {
   EXPECT_EQ(header.ramp, 1.0);
   EXPECT_EQ(read<double>(record, at.raw.offset), test::Rig::raw(-0.002));
   EXPECT_EQ(read<std::int64_t>(record, at.age_ns.offset + 8), 77);
+  EXPECT_EQ(read<std::uint32_t>(record, at.drive_faults.offset + 4), 0x01020304u);
+  EXPECT_EQ(read<std::uint16_t>(record, at.drive_limits.offset + 2), 0x0506);
   EXPECT_NEAR(read<double>(record, at.q.offset), -0.002, 1e-15);
   EXPECT_NEAR(read<double>(record, at.effort.offset), 2.0, 1e-12);
   EXPECT_NEAR(read<double>(record, at.scene_force.offset), 2.0, 1e-12);

@@ -17,7 +17,7 @@ TEST(SimDevice, SamplesInPhaseWithoutAge) {
   ASSERT_TRUE(info.has_value());
   EXPECT_EQ(info->timing, drivers::Timing::in_phase);
   EXPECT_EQ(info->worst_sample_age_s, 0);
-  EXPECT_TRUE(info->lock_name.empty()) << "there is nothing physical to lock";
+  EXPECT_TRUE(device.lock_names().empty()) << "there is nothing physical to lock";
   BenchDevice bench(free_mass());
   bench.read();
   const AxisSample& sample = bench.read();
