@@ -150,38 +150,6 @@ void check_host_id(const CanPlace& place) {
   }
 }
 
-can::DeviceOptions options_of(const CanPlace& place) {
-  can::DeviceOptions options{
-      .name = place.device.device.name,
-      .protocol = place.protocol,
-      .timing = timing_of(place),
-      .period_s = place.compilation.spec.period_s,
-      .rates = {.nominal_Hz = place.bus.bitrate_Hz, .data_Hz = place.bus.data_bitrate_Hz},
-      .turnaround_s = place.bus.turnaround_s,
-      .drive_delay_s = place.bus.drive_delay_s,
-      .watchdog_s = place.bus.watchdog_s,
-      .worst_sample_age_s = 0,
-      .drives = {},
-      .estimates_every_s = place.bus.estimates_every_s,
-      .heartbeat_every_s = place.bus.heartbeat_every_s,
-      .source = host_node(place),
-      .prefix = static_cast<std::uint16_t>(place.bus.prefix),
-      .ignore_position_bounds = place.bus.ignore_position_bounds,
-      .host_node = host_node(place)};
-  check_watchdog(place);
-  check_host_id(place);
-  for (std::size_t i = 0; i < place.device.axes.size(); ++i)
-    options.drives.push_back(drive_of(place, i));
-  if (options.timing == Timing::free_running &&
-      options.estimates_every_s > options.period_s * 1.0001) {
-    place.compilation.refuse(place.path("estimates_every_s"),
-                             "expected at most the period, " + format_number(options.period_s) +
-                                 " s: every tick needs a sample; found " +
-                                 format_number(options.estimates_every_s) + " s");
-  }
-  return options;
-}
-
 /// Keys of CAN where there is CAN, and only there.
 bool has_keys(Compilation& compilation, const DevicePlace& place, bool wanted) {
   const std::string driver(word_of(place.device.driver));
@@ -195,6 +163,87 @@ bool has_keys(Compilation& compilation, const DevicePlace& place, bool wanted) {
   for (std::size_t i = 0; i < place.axes.size(); ++i)
     good = check(place.axes[i].path + ".can", place.device.axes[i].can.has_value()) && good;
   return good;
+}
+
+/// A key that another driver has would be taken for granted and do nothing.
+void refuse_foreign_keys(const CanPlace& place) {
+  const CanBus usual;
+  const auto refuse = [&](bool given, const std::string& path, const char* drivers) {
+    if (!given) return;
+    place.compilation.refuse(path,
+                             std::string("a key of driver: ") + drivers + ", found with driver: " +
+                                 std::string(word_of(place.device.device.driver)) + "; remove it");
+  };
+  const bool odrive = place.protocol == can::Protocol::odrive;
+  const bool moteus = place.protocol == can::Protocol::moteus;
+  const CanBus& bus = place.bus;
+  refuse(!moteus && bus.prefix != usual.prefix, place.path("prefix"), "moteus");
+  refuse(!moteus && bus.ignore_position_bounds, place.path("ignore_position_bounds"), "moteus");
+  refuse(!moteus && bus.data_bitrate_Hz != usual.data_bitrate_Hz, place.path("data_bitrate_Hz"),
+         "moteus");
+  refuse(odrive && bus.host_id != usual.host_id, place.path("host_id"), "moteus or cia402");
+  refuse(moteus && bus.heartbeat_every_s != usual.heartbeat_every_s,
+         place.path("heartbeat_every_s"), "odrive or cia402");
+  refuse(!odrive && bus.estimates_every_s != usual.estimates_every_s,
+         place.path("estimates_every_s"), "odrive");
+  for (std::size_t i = 0; i < place.device.axes.size(); ++i) {
+    const CanDrive& drive = *place.device.device.axes[i].can;
+    refuse(!odrive && drive.max_current_A, place.drive_path(i, "max_current_A"), "odrive");
+    refuse(!odrive && drive.max_velocity_turns_s, place.drive_path(i, "max_velocity_turns_s"),
+           "odrive");
+    if (odrive && drive.max_velocity_turns_s && !drive.max_current_A)
+      place.compilation.refuse(place.drive_path(i, "max_velocity_turns_s"),
+                               "an ODrive is told both limits or none: give max_current_A, too");
+  }
+}
+
+void check_interface(const CanPlace& place, const std::string& path, const std::string& name) {
+  constexpr std::size_t kLongest = 15;  // of the kernel
+  const bool good =
+      !name.empty() && name.size() <= kLongest && name.find_first_of(" /:") == std::string::npos;
+  if (!good)
+    place.compilation.refuse(path,
+                             "expected the name of an interface, 1 to 15 letters such as "
+                             "can0, found '" +
+                                 name + "'");
+}
+
+can::DeviceOptions options_of(const CanPlace& place) {
+  can::DeviceOptions options{
+      .name = place.device.device.name,
+      .protocol = place.protocol,
+      .timing = timing_of(place),
+      .period_s = place.compilation.spec.period_s,
+      .rates = {.nominal_Hz = place.bus.bitrate_Hz, .data_Hz = place.bus.data_bitrate_Hz},
+      .turnaround_s = place.bus.turnaround_s,
+      .drive_delay_s = place.bus.drive_delay_s,
+      .watchdog_s = place.bus.watchdog_s,
+      .most_unsent_ticks = place.device.guard.max_stale_ticks,
+      .collect_s = 0,
+      .worst_sample_age_s = 0,
+      .drives = {},
+      .estimates_every_s = place.bus.estimates_every_s,
+      .heartbeat_every_s = place.bus.heartbeat_every_s,
+      .source = host_node(place),
+      .prefix = static_cast<std::uint16_t>(place.bus.prefix),
+      .ignore_position_bounds = place.bus.ignore_position_bounds,
+      .host_node = host_node(place)};
+  refuse_foreign_keys(place);
+  check_interface(place, place.path("interface"), place.bus.interface);
+  check_watchdog(place);
+  check_host_id(place);
+  for (std::size_t i = 0; i < place.device.axes.size(); ++i)
+    options.drives.push_back(drive_of(place, i));
+  if (options.timing == Timing::free_running &&
+      options.estimates_every_s > options.period_s * 1.0001) {
+    place.compilation.refuse(place.path("estimates_every_s"),
+                             "every tick needs a sample: expected at most the period, " +
+                                 format_number(options.period_s) + " s, found " +
+                                 format_number(options.estimates_every_s) +
+                                 " s; an ODrive sends one a millisecond at most, so use "
+                                 "timing: in_phase, or a loop.rate_Hz of at most 1000");
+  }
+  return options;
 }
 
 /// Two devices may share an interface if nobody takes the frames of the one for those of the other.
@@ -214,10 +263,22 @@ void check_neighbours(Compilation& compilation, std::size_t first, std::size_t s
       if (alone) {
         compilation.refuse(
             path + ".can.interface",
-            drive.interface + " has the drives of device '" + a.name + "' already, " +
-                (a.protocol == b.protocol ? "which send a SYNC of their own; make them one device"
-                                          : "which speak another protocol with the same ids") +
-                ", or use another interface");
+            drive.interface + " has the drives of device '" + a.name + "' already, which " +
+                (a.protocol == b.protocol
+                     ? "have a SYNC of their own: make them one device, or use another interface"
+                     : "speak another protocol with the same ids: use another interface"));
+        return;
+      }
+      if (a.rates.nominal_Hz != b.rates.nominal_Hz || a.rates.data_Hz != b.rates.data_Hz) {
+        compilation.refuse(path + ".can.bitrate_Hz", "another device has other bit rates on " +
+                                                         drive.interface + ": '" + a.name + "'");
+        return;
+      }
+      if (b.protocol == can::Protocol::moteus &&
+          (a.source == drive.node || b.source == other.node)) {
+        compilation.refuse(path + ".can.host_id",
+                           "on " + drive.interface + " a drive has the id of a host: '" + a.name +
+                               "' and this device; give the hosts ids that no drive has");
         return;
       }
       if (other.node != drive.node) continue;
@@ -232,10 +293,11 @@ void check_load(Compilation& compilation, const can::BusLoad& bus, const std::st
   if (bus.share <= can::kMostLoad) return;
   compilation.refuse(path, "expected at most 80 % of the time of " + bus.interface + ", found " +
                                format_number(std::round(1000 * bus.share) / 10) +
-                               " % at worst for " + std::to_string(bus.axes) + " axes at " +
+                               " % at worst for " + std::to_string(bus.axes) +
+                               (bus.axes == 1 ? " axis at " : " axes at ") +
                                format_number(1 / compilation.spec.period_s) + " Hz; " +
-                               std::to_string(bus.axes_that_fit) +
-                               " of these axes fit: use more interfaces, or lower loop.rate_Hz");
+                               std::to_string(bus.axes_that_fit) + " of these axes fit: use more " +
+                               "interfaces, a higher bit rate, or a lower loop.rate_Hz");
 }
 
 /// How long the loop may wait for the answers of a tick.
@@ -255,9 +317,16 @@ double answers_s(Compilation& compilation, const DevicePlace& place,
   return most_s;
 }
 
+/// Then the loop waits, for all devices.
+bool any_in_phase(const Compilation& compilation) {
+  return std::ranges::any_of(compilation.can, [](const auto& device) {
+    return device && device->timing == Timing::in_phase;
+  });
+}
+
 void check_times(Compilation& compilation, const DevicePlace& place, can::DeviceOptions& device) {
   const can::BusLoad bus = can::worst_of(device, compilation.buses);
-  device.collect_s = compilation.collect_s;
+  device.collect_s = any_in_phase(compilation) ? compilation.collect_s : 0;
   device.worst_sample_age_s = can::worst_sample_age_s(device, bus);
   const double latency_s = can::worst_latency_s(device, bus);
   if (place.device.latency_s >= latency_s) return;

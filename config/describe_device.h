@@ -236,7 +236,8 @@ void describe(V& v, CanBus& s) {
   v.required("interface", s.interface, {.about = "the CAN interface, such as can0"});
   v.required("watchdog_s", s.watchdog_s,
              {.about = "a drive that hears no command for so long goes off by itself: longer than "
-                       "guard.max_stale_ticks and one, at most 50 ms; arming proves it",
+                       "the ticks of guard.max_stale_ticks and one more, at most 50 ms; read back "
+                       "from the drive, or proved by silence, before it is armed",
               .min = 0,
               .max = 0.05,
               .above_min = true,

@@ -19,6 +19,7 @@ namespace {
 struct FoundBus {
   std::string interface {};
   std::string problem{}, note{};
+  bool asked = false;
   std::vector<can::FoundDrive> drives{};
 };
 
@@ -58,17 +59,19 @@ FoundBus look(const std::string& interface, const DevicesOptions& options) {
   }
   // A question would be another master's frame to who drives them.
   const bool driven = is_locked("can-" + interface + "-", device_lock_directories());
+  found.asked = !driven;
   if (driven) found.note = "hapticd drives this bus: nothing was asked, only listened";
   const auto ask = protocols(options.ask);
-  if (!fd && std::ranges::find(ask, can::Protocol::moteus) != ask.end())
+  if (!driven && !fd && std::ranges::find(ask, can::Protocol::moteus) != ask.end())
     found.note = "classic frames only, so no moteus can answer";
   can::SocketConversation conversation(*socket, can::this_host());
   found.drives =
       can::scan(conversation, {.listen_s = options.listen_s, .ask = ask, .questions = !driven});
+  if (socket->trouble() != can::Trouble::none) found.problem = can::word_of(socket->trouble());
   return found;
 }
 
-Json to_json(const std::vector<FoundBus>& all) {
+Json to_json(const std::vector<FoundBus>& all, bool any) {
   Json list = Json::array();
   for (const FoundBus& found : all) {
     Json drives = Json::array();
@@ -82,7 +85,7 @@ Json to_json(const std::vector<FoundBus>& all) {
                     {"note", found.note.empty() ? Json(nullptr) : Json(found.note)},
                     {"drives", drives}});
   }
-  return {{"ok", true}, {"can", list}};
+  return {{"ok", any}, {"can", list}};
 }
 
 std::string to_lines(const std::vector<FoundBus>& all) {
@@ -91,7 +94,9 @@ std::string to_lines(const std::vector<FoundBus>& all) {
     text += found.interface + (found.problem.empty() ? "" : ": " + found.problem) +
             (found.note.empty() ? "" : ": " + found.note) + "\n";
     if (found.drives.empty() && found.problem.empty())
-      text += "  nobody was heard; ask for one kind with --ask odrive, moteus or cia402\n";
+      text += found.asked ? "  nobody was heard; a drive that says nothing by itself is found with "
+                            "--ask odrive, moteus or cia402\n"
+                          : "  nobody was heard\n";
     for (const can::FoundDrive& drive : found.drives)
       text += fmt::format("  node {:<4}{:<8}{}{}\n", drive.node, can::word_of(drive.protocol),
                           drive.what, drive.refused.empty() ? "" : "; refused: " + drive.refused);
@@ -112,9 +117,9 @@ ExitCode run_devices(const DevicesOptions& options, bool json) {
   }
   std::vector<FoundBus> all;
   for (const std::string& interface : interfaces) all.push_back(look(interface, options));
-  std::fputs(json ? (to_text(to_json(all)) + "\n").c_str() : to_lines(all).c_str(), stdout);
   const bool any =
       std::ranges::any_of(all, [](const FoundBus& one) { return one.problem.empty(); });
+  std::fputs(json ? (to_text(to_json(all, any)) + "\n").c_str() : to_lines(all).c_str(), stdout);
   return any ? ExitCode::ok : ExitCode::unavailable;
 }
 

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -59,7 +60,8 @@ Result<Event> event_of(const std::string& text) {
   const char* end = text.data() + text.size();
   const bool number = parts && std::from_chars(text.data() + at + 1, end, seconds).ptr == end &&
                       at + 1 < text.size();
-  if (!number || seconds < 0 || std::ranges::find(kKinds, event.kind) == kKinds.end())
+  if (!number || !(seconds >= 0 && seconds < 1e9) ||
+      std::ranges::find(kKinds, event.kind) == kKinds.end())
     return fail(ExitCode::usage,
                 "--fault: expected KIND:AXIS@SECONDS, such as reset:left.x@2.5, "
                 "with reset, fail, mute or speak; found " +
@@ -216,6 +218,11 @@ class Emulation {
   Result<Wire*> wire_of(const std::string& interface, const can::BitRates& rates) {
     Wire& wire = wires_[interface];
     if (wire.bus) return &wire;
+    // Real drives with these ids would be driven on made-up positions.
+    if (!options_.real && std::filesystem::exists("/sys/class/net/" + interface + "/device"))
+      return fail(ExitCode::no, interface +
+                                    " is a real controller: emulated drives on a bus with "
+                                    "real ones are dangerous; --real if there are none");
     auto socket = sim::can::open_bus(interface);
     if (!socket) return tl::unexpected(socket.error());
     wire.socket = FileDescriptor(*socket);

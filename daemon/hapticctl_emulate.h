@@ -12,6 +12,7 @@ namespace hapticd::daemon {
 struct EmulateOptions {
   std::string config{};
   std::string bus{};  ///< this interface alone; empty: all of the config
+  bool real = false;  ///< on a real controller, too
   std::optional<double> duration_s{};
   double loss = 0, duplicate = 0;  ///< shares of the frames, in each direction
   double delay_s = 0, jitter_s = 0;

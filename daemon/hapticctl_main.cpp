@@ -140,6 +140,8 @@ void add_bus_verbs(CommandLine& line) {
   emulate->add_option("CONFIG", options.config, "the config")->required();
   emulate->add_option("--bus", options.bus, "devices on this interface alone (default: all)")
       ->type_name("NAME");
+  emulate->add_flag("--real", options.real,
+                    "on a real controller, too: only where no real drive is on the bus");
   emulate->add_option("--duration", options.duration_s, "end after so many seconds")
       ->check(daemon::within(0.0, 1e9))
       ->type_name("S");

@@ -141,14 +141,27 @@ Result<drivers::DeviceInfo> connect_locked(drivers::Device& device,
   return info;
 }
 
+namespace {
+
+/// Somebody else holds it, or it cannot be known.
+bool may_be_locked(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (fd < 0) return errno != ENOENT;
+  const bool free = ::flock(fd, LOCK_SH | LOCK_NB) == 0;
+  ::close(fd);
+  return !free;
+}
+
+}  // namespace
+
 bool is_locked(const std::string& name_start, const std::vector<std::string>& directories) {
   for (const std::string& directory : directories) {
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(directory, none)) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
       if (!entry.path().filename().string().starts_with(kDeviceLock + name_start)) continue;
-      const auto lock = LockFile::acquire(entry.path().string(), name_start);
-      if (!lock && lock.error().code == ExitCode::try_again) return true;
+      if (may_be_locked(entry.path().string())) return true;
     }
+    if (error && error != std::errc::no_such_file_or_directory) return true;
   }
   return false;
 }

@@ -39,7 +39,7 @@ Result<std::vector<LockFile>> lock_device(const std::string& lock_name,
 Result<drivers::DeviceInfo> connect_locked(drivers::Device& device,
                                            const std::vector<std::string>& directories,
                                            std::vector<LockFile>& locks);
-/// Whether a program holds a device whose name starts so.
+/// Whether a program holds a device whose name starts so; true, too, where that may not be read.
 bool is_locked(const std::string& name_start, const std::vector<std::string>& directories);
 
 /// Where device locks stand: the service's own directory, and the one for all.

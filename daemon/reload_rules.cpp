@@ -44,6 +44,7 @@ void compare_axis(const config::Axis& a, const config::Axis& b, const std::strin
   found.compare(a.encoder == encoder, key + ".encoder");
   found.compare(a.actuator == actuator, key + ".actuator");
   found.compare(a.homing == b.homing, key + ".homing");
+  found.compare(a.can == b.can, key + ".can");
   // Their efforts would step under the hand: the fade of a swapped plan knows contact forces alone.
   found.compare(a.observer == b.observer, key + ".observer");
   found.compare(a.compensation == b.compensation, key + ".compensation");

@@ -26,9 +26,10 @@ std::int64_t virtual_now() noexcept {
 Result<void> only_simulated(const config::Config& config) {
   for (const config::Device& device : config.devices) {
     if (device.driver != config::Driver::sim) {
-      return fail(ExitCode::usage,
-                  "device " + device.name +
-                      " has a real driver; only devices with driver: sim can be simulated");
+      return fail(ExitCode::usage, "device " + device.name +
+                                       " has a real driver; only devices with driver: sim can be "
+                                       "simulated (drives on CAN are "
+                                       "stood in for by `hapticctl emulate`)");
     }
   }
   return {};

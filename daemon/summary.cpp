@@ -98,6 +98,11 @@ void add_devices(const Summary& s, Table& table) {
                     device.not_homed.empty()
                         ? std::string("every axis homed")
                         : fmt::format("not homed: {}", fmt::join(device.not_homed, ", "))));
+    if (const auto& bus = device.traffic)
+      table.row("bus of " + device.name,
+                fmt::format("{} samples late, {} frames not sent, {} lost on the way here, {} "
+                            "commands of others",
+                            bus->late, bus->not_sent, bus->lost, bus->foreign));
   }
 }
 

@@ -39,11 +39,17 @@ struct LimitCount {
   std::uint64_t ticks = 0;  ///< since the start
 };
 
+/// As drivers::Traffic.
+struct TrafficSummary {
+  std::uint64_t late = 0, not_sent = 0, lost = 0, foreign = 0;
+};
+
 struct DeviceSummary {
   std::string name;
   double work_J = 0;                              ///< done by its motors since the start
   double fade = 1;                                ///< what is let through: 1 all, 0 nothing
   std::vector<std::string> homed{}, not_homed{};  ///< its axes
+  std::optional<TrafficSummary> traffic{};        ///< none: it has no bus
 };
 
 struct Summary {

@@ -33,6 +33,14 @@ Json limits_json(const Summary& s) {
   return json;
 }
 
+Json traffic_json(const std::optional<TrafficSummary>& bus) {
+  if (!bus) return nullptr;
+  return {{"samples_late", bus->late},
+          {"frames_not_sent", bus->not_sent},
+          {"frames_lost", bus->lost},
+          {"commands_of_others", bus->foreign}};
+}
+
 Json devices_json(const Summary& s) {
   Json json = Json::array();
   for (const DeviceSummary& device : s.devices) {
@@ -42,7 +50,8 @@ Json devices_json(const Summary& s) {
     json.push_back({{"device", device.name},
                     {"work_J", device.work_J},
                     {"fade", device.fade},
-                    {"homed", std::move(axes)}});
+                    {"homed", std::move(axes)},
+                    {"bus", traffic_json(device.traffic)}});
   }
   return json;
 }

@@ -169,6 +169,13 @@ Summary Supervisor::summary() const {
   if (::getloadavg(&load, 1) == 1) s.load_average = load;
   s.unproven = unproven_;
   take_records(engine_->program().spec(), engine_->live(), s);
+  for (std::size_t i = 0; i < s.devices.size(); ++i) {
+    if (const drivers::Traffic* bus = engine_->device(i).traffic())
+      s.devices[i].traffic = {.late = bus->late.load(),
+                              .not_sent = bus->not_sent.load(),
+                              .lost = bus->lost.load(),
+                              .foreign = bus->foreign.load()};
+  }
   return s;
 }
 

@@ -9,6 +9,7 @@
 //   stop()                   servo thread, on every way out and in every tick of a fault
 //   disconnect()             supervisor, after the loop has ended
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -41,6 +42,14 @@ struct TickTime {
   std::int64_t tick = 0;         ///< number of the period
   std::int64_t start_ns = 0;     ///< of the period: CLOCK_MONOTONIC, or virtual time
   std::int64_t deadline_ns = 0;  ///< collect is given up at this time
+};
+
+/// What a bus did to a device since it was connected: counted by the servo thread, read by anyone.
+struct Traffic {
+  std::atomic<std::uint64_t> late{0};      ///< samples that came after their tick
+  std::atomic<std::uint64_t> not_sent{0};  ///< frames that the kernel did not take
+  std::atomic<std::uint64_t> lost{0};     ///< at least so many were dropped by it on their way here
+  std::atomic<std::uint64_t> foreign{0};  ///< commands of others
 };
 
 enum class Collected : std::uint8_t { complete, waiting };
@@ -82,6 +91,8 @@ class Device {
   virtual void stop() noexcept = 0;
   /// Why Aux::faulted is set, as a static text for people.
   virtual std::string_view fault_text() const noexcept { return {}; }
+  /// nullptr: the device has no bus.
+  virtual const Traffic* traffic() const noexcept { return nullptr; }
 };
 
 }  // namespace hapticd::drivers

@@ -157,17 +157,26 @@ double worst_sample_age_s(const DeviceOptions& device, const BusLoad& bus) {
   switch (device.timing) {
     case Timing::in_phase:  // of one that came first, when the last one comes at the deadline
       return device.collect_s;
-    case Timing::free_running:
+    case Timing::free_running:  // since it came; what it took on the bus is in the latency
       return device.estimates_every_s * (1 + kDrift) + bus.busiest_s;
-    case Timing::reply_to_command:
-      return device.period_s;
+    case Timing::reply_to_command:  // and the loop may wake late by a tenth
+      return 1.1 * device.period_s;
   }
   return 0;
 }
 
 double worst_latency_s(const DeviceOptions& device, const BusLoad& bus) {
-  const double frames_s = device.timing == Timing::in_phase ? bus.commands_s : bus.busiest_s;
-  return worst_sample_age_s(device, bus) + kHost_s + frames_s + device.drive_delay_s;
+  const double rest_s = worst_sample_age_s(device, bus) + kHost_s + device.drive_delay_s;
+  switch (device.timing) {
+    case Timing::in_phase:
+      return rest_s + bus.commands_s;
+    case Timing::
+        free_running:  // on its way here, and waiting for devices that are sampled in phase
+      return rest_s + 2 * bus.busiest_s + device.collect_s;
+    case Timing::reply_to_command:
+      return rest_s + bus.busiest_s + device.collect_s;
+  }
+  return rest_s;
 }
 
 }  // namespace hapticd::can

@@ -51,7 +51,10 @@ std::vector<std::string> CanDevice::lock_names() const {
 Result<drivers::DeviceInfo> CanDevice::connect() {
   disconnect();
   make_axes();
-  if (auto opened = open_buses(); !opened) return tl::unexpected(opened.error());
+  if (auto opened = open_buses(); !opened) {
+    disconnect();
+    return tl::unexpected(opened.error());
+  }
   auto found = connect_drives();
   if (!found) {
     disconnect();
@@ -129,30 +132,45 @@ void CanDevice::make_wait_descriptor() {
 }
 
 void CanDevice::disconnect() noexcept {
-  if (!buses_.empty() && buses_.front().socket != nullptr) stop();
+  stop();
   if (own_wait_descriptor_) ::close(wait_descriptor_);
   own_wait_descriptor_ = false;
   wait_descriptor_ = -1;
   axes_.clear();
   buses_.clear();
-  arm_wanted_ = bus_failed_ = false;
+  arm_wanted_ = bus_failed_ = told_ = false;
 }
 
 // -- loop
 
 void CanDevice::request(const drivers::TickTime& time) noexcept {
   start_ns_ = time.start_ns;
+  let_go();
   for (Axis& axis : axes_) {
     axis.heard = false;
     axis.drive->begin_tick(start_ns_);
   }
-  const bool asks = options_.timing == Timing::in_phase;
-  for (Bus& bus : buses_) {
-    if (asks) empty(bus, false);
-    bus.outbox.clear();
-    for (const std::size_t i : bus.axes) axes_[i].drive->query(bus.outbox);
-    (void)bus.socket->send(bus.outbox.frames());
+  for (Bus& bus : buses_) ask(bus);
+}
+
+/// In phase. A drive that has not answered the tick before is not asked in this one: what comes of it now is late.
+void CanDevice::ask(Bus& bus) noexcept {
+  if (options_.timing != Timing::in_phase) return;
+  empty(bus, false);
+  bool owed = false;
+  for (const std::size_t i : bus.axes) owed = owed || axes_[i].asked;
+  const bool together = options_.protocol == Protocol::cia402;  // one SYNC asks all
+  bus.outbox.clear();
+  const std::int64_t now_ns = host_.now_ns();
+  for (const std::size_t i : bus.axes) {
+    Axis& axis = axes_[i];
+    const bool owes = together ? owed : axis.asked;
+    axis.asked = !owes && !axis.drive->silent();
+    if (!axis.asked) continue;
+    axis.asked_ns = now_ns;
+    axis.drive->query(bus.outbox);
   }
+  (void)bus.socket->send(bus.outbox.frames());
 }
 
 drivers::Collected CanDevice::collect(std::span<AxisSample> axes, Aux& aux) noexcept {
@@ -179,38 +197,48 @@ void CanDevice::hear(Bus& bus, const Received& received, bool in_time) noexcept 
     Axis& axis = axes_[i];
     const Heard heard = axis.drive->take(received.frame, received.stamp_ns);
     if (heard == Heard::nothing) continue;
-    if (heard == Heard::sample && in_time) axis.heard = true;
-    if (heard == Heard::sample && !in_time) ++counters_.late;
-    if (heard != Heard::other_master) return;
-    ++counters_.foreign;
-    return fail_bus(bus, received.local ? "another program on this machine commands these drives"
-                                        : "another master on the bus commands these drives");
+    if (heard == Heard::other_master) {
+      ++foreign_;
+      return fail_bus(bus, received.local ? "another program on this machine commands these drives"
+                                          : "another master on the bus commands these drives");
+    }
+    if (heard != Heard::sample) return;
+    const bool counts = in_time && (options_.timing != Timing::in_phase || axis.asked);
+    axis.asked = false;
+    axis.heard = axis.heard || counts;
+    if (options_.timing == Timing::reply_to_command) axis.asked_ns = axis.command_ns;
+    if (!counts) ++late_;
+    return;
   }
 }
 
-/// In phase: a drive that may be asked has not answered yet, on a bus that works.
+/// In phase: a drive that was asked has not answered yet, on a bus that works.
 bool CanDevice::owed() const noexcept {
   return std::ranges::any_of(axes_, [&](const Axis& axis) {
-    return !axis.heard && !axis.drive->silent() &&
-           buses_[axis.bus].socket->trouble() < Trouble::bus_off;
+    return axis.asked && buses_[axis.bus].socket->trouble() < Trouble::bus_off;
   });
+}
+
+/// Of the newest sample, at most: since its question went out, or since it came.
+std::int64_t CanDevice::age_ns(const Axis& axis, std::int64_t now_ns) const noexcept {
+  return now_ns -
+         (options_.timing == Timing::free_running ? axis.drive->stamp_ns() : axis.asked_ns);
 }
 
 void CanDevice::fill(std::span<AxisSample> samples) noexcept {
   const std::int64_t now_ns = host_.now_ns();
   for (std::size_t i = 0; i < samples.size() && i < axes_.size(); ++i) {
-    const Drive& drive = *axes_[i].drive;
+    const Axis& axis = axes_[i];
+    const Drive& drive = *axis.drive;
     AxisSample& sample = samples[i];
     sample.raw = drive.counts();
     sample.stamp_ns = drive.stamp_ns();
-    sample.age_ns = now_ns - drive.stamp_ns();
+    sample.age_ns = age_ns(axis, now_ns);
     sample.drive_limits = drive.limits();
     sample.drive_faults = drive.faults();
     const bool young =
-        options_.timing == Timing::free_running ? sample.age_ns <= worst_age_ns_ : axes_[i].heard;
-    // A drive that proves its watchdog is not asked; it has no force then, and stands where it was.
-    const bool known = drive.knows_position() && (young || drive.silent());
-    sample.freshness = known ? Freshness::fresh : Freshness::missing;
+        (options_.timing == Timing::free_running || axis.heard) && sample.age_ns <= worst_age_ns_;
+    sample.freshness = drive.knows_position() && young ? Freshness::fresh : Freshness::missing;
   }
 }
 
@@ -225,41 +253,53 @@ void CanDevice::fail_bus(const Bus& bus, std::string_view what) noexcept {
   fault_text_.begin().add(bus.interface).add(": ").add(what).publish();
 }
 
-/// What failed is told in one tick at least; it is over when the power is off and nothing is wrong any more.
 void CanDevice::report(Aux& aux) noexcept {
   aux = Aux{};
   aux.armed = std::ranges::all_of(axes_, [](const Axis& axis) { return axis.drive->armed(); });
   aux.faulted = bus_failed_ ||
                 std::ranges::any_of(axes_, [](const Axis& axis) { return axis.drive->failed(); });
-  if (!aux.faulted || arm_wanted_) return;
+  told_ = told_ || aux.faulted;
+}
+
+/// What failed was told in a tick; it is over when the power is off. What is still wrong fails anew.
+void CanDevice::let_go() noexcept {
+  if (!std::exchange(told_, false) || arm_wanted_) return;
   bus_failed_ = false;
   for (Bus& bus : buses_) bus.socket->clear_trouble();
   for (Axis& axis : axes_) axis.drive->clear_failure();
 }
 
 void CanDevice::command(std::span<const double> effort, std::span<double> delivered) noexcept {
-  for (Bus& bus : buses_) {
-    bus.outbox.clear();
-    for (const std::size_t i : bus.axes) {
-      Drive& drive = *axes_[i].drive;
-      const double most_Nm = drive.max_torque_Nm();
-      const double wanted_Nm = effort[i] * drive.torque_per_effort();
-      const double torque_Nm =
-          std::isfinite(wanted_Nm) ? std::clamp(wanted_Nm, -most_Nm, most_Nm) : 0;
-      if (bus_failed_)
-        drive.stop_now(bus.outbox);
-      else
-        drive.act(torque_Nm, bus.outbox);
-      axes_[i].frames_end = bus.outbox.frames().size();
-    }
-    // What was not sent leaves the drive with what it had.
-    const std::size_t sent = bus.socket->send(bus.outbox.frames());
-    for (const std::size_t i : bus.axes) {
-      Axis& axis = axes_[i];
-      if (axis.frames_end <= sent) axis.delivered_Nm = axis.drive->carried_Nm();
-      axis.drive->sent(axis.frames_end <= sent);
-      delivered[i] = axis.drive->armed() ? axis.delivered_Nm / axis.drive->torque_per_effort() : 0;
-    }
+  for (Bus& bus : buses_) command_bus(bus, effort, delivered);
+  count();
+}
+
+void CanDevice::command_bus(Bus& bus, std::span<const double> effort,
+                            std::span<double> delivered) noexcept {
+  bus.outbox.clear();
+  const std::int64_t now_ns = host_.now_ns();
+  for (const std::size_t i : bus.axes) {
+    Axis& axis = axes_[i];
+    Drive& drive = *axis.drive;
+    const double most_Nm = drive.max_torque_Nm();
+    const double wanted_Nm = effort[i] * drive.torque_per_effort();
+    axis.command_ns = now_ns;
+    axis.first_frame = bus.outbox.frames().size();
+    if (bus_failed_)
+      drive.stop_now(bus.outbox);
+    else
+      drive.act(std::isfinite(wanted_Nm) ? std::clamp(wanted_Nm, -most_Nm, most_Nm) : 0,
+                bus.outbox);
+    axis.frames_end = bus.outbox.frames().size();
+  }
+  // What was not sent leaves the drive with what it had.
+  const std::size_t sent = bus.socket->send(bus.outbox.frames());
+  for (const std::size_t i : bus.axes) {
+    Axis& axis = axes_[i];
+    const bool all = axis.frames_end <= sent;
+    if (all) axis.delivered_Nm = axis.drive->carried_Nm();
+    if (axis.frames_end > axis.first_frame) axis.drive->sent(all);
+    delivered[i] = axis.drive->armed() ? axis.delivered_Nm / axis.drive->torque_per_effort() : 0;
   }
 }
 
@@ -270,25 +310,30 @@ void CanDevice::set_armed(bool armed) noexcept {
 
 void CanDevice::stop() noexcept {
   for (Bus& bus : buses_) {
+    if (!bus.socket) continue;  // it could not be opened
     bus.outbox.clear();
+    const std::int64_t now_ns = host_.now_ns();
     for (const std::size_t i : bus.axes) {
+      axes_[i].command_ns = now_ns;
       axes_[i].drive->stop_now(bus.outbox);
       axes_[i].delivered_Nm = 0;
     }
     (void)bus.socket->send(bus.outbox.frames());
   }
+  count();
 }
 
-SocketCounters CanDevice::socket_counters() const noexcept {
-  SocketCounters sum;
+void CanDevice::count() noexcept {
+  std::uint64_t not_sent = 0, lost = 0;
   for (const Bus& bus : buses_) {
-    const SocketCounters& one = bus.socket->counters();
-    sum.sent += one.sent;
-    sum.received += one.received;
-    sum.not_sent += one.not_sent;
-    sum.lost += one.lost;
+    if (!bus.socket) continue;
+    not_sent += bus.socket->counters().not_sent;
+    lost += bus.socket->counters().lost;
   }
-  return sum;
+  traffic_.late.store(late_, std::memory_order_relaxed);
+  traffic_.foreign.store(foreign_, std::memory_order_relaxed);
+  traffic_.not_sent.store(not_sent, std::memory_order_relaxed);
+  traffic_.lost.store(lost, std::memory_order_relaxed);
 }
 
 }  // namespace hapticd::can

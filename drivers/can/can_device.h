@@ -1,7 +1,8 @@
 // A device whose axes are drives on CAN buses, behind drivers/device.h. In a tick each bus gets what the drives ask and
 // command in one system call each, and is emptied in one or two; nothing is tried twice.
 //
-//   request   what came too late for the tick before is counted; queries go out
+//   request   what came too late for the tick before is counted; questions go out, but not to a drive that still owes an
+//             answer: what it then says would be taken for the next one
 //   collect   the newest sample of each drive, if it is young enough
 //   command   torques, or the next step of arming
 //
@@ -20,12 +21,6 @@
 
 namespace hapticd::can {
 
-struct Counters {
-  std::uint64_t late = 0;     ///< samples that came after their tick
-  std::uint64_t missing = 0;  ///< ticks of an axis without a sample that is young enough
-  std::uint64_t foreign = 0;  ///< commands of others
-};
-
 class CanDevice final : public drivers::Device {
  public:
   explicit CanDevice(DeviceOptions options, Host& host = this_host());
@@ -43,17 +38,19 @@ class CanDevice final : public drivers::Device {
   void stop() noexcept override;
   std::string_view fault_text() const noexcept override { return fault_text_.view(); }
 
-  const Counters& counters() const noexcept { return counters_; }
-  SocketCounters socket_counters() const noexcept;
+  const drivers::Traffic* traffic() const noexcept override { return &traffic_; }
 
  private:
   /// An axis and what the device knows of its drive.
   struct Axis {
     std::unique_ptr<Drive> drive;
     std::size_t bus = 0;
-    bool heard = false;          ///< a sample, in this tick
-    double delivered_Nm = 0;     ///< what the drive was last told
-    std::size_t frames_end = 0;  ///< of this tick's outbox: so many frames until its last one
+    bool heard = false;           ///< a sample, in this tick
+    bool asked = false;           ///< in phase: its question is out, and no answer has come
+    std::int64_t asked_ns = 0;    ///< when the question went out that the newest sample answers
+    std::int64_t command_ns = 0;  ///< when the last command went out
+    double delivered_Nm = 0;      ///< what the drive was last told
+    std::size_t first_frame = 0, frames_end = 0;  ///< its part of this tick's outbox
   };
   struct Bus {
     std::string interface;
@@ -68,11 +65,16 @@ class CanDevice final : public drivers::Device {
   void make_wait_descriptor();
   void empty(Bus& bus, bool in_time) noexcept;
   void hear(Bus& bus, const Received& received, bool in_time) noexcept;
+  void ask(Bus& bus) noexcept;
   bool owed() const noexcept;
+  std::int64_t age_ns(const Axis& axis, std::int64_t now_ns) const noexcept;
   void fill(std::span<AxisSample> samples) noexcept;
   void look_for_trouble() noexcept;
   void fail_bus(const Bus& bus, std::string_view what) noexcept;
   void report(Aux& aux) noexcept;
+  void let_go() noexcept;
+  void command_bus(Bus& bus, std::span<const double> effort, std::span<double> delivered) noexcept;
+  void count() noexcept;
 
   const DeviceOptions options_;
   Host& host_;
@@ -83,8 +85,10 @@ class CanDevice final : public drivers::Device {
   std::int64_t start_ns_ = 0;  ///< of this tick
   bool arm_wanted_ = false;
   bool bus_failed_ = false;
+  bool told_ = false;  ///< a failure, in this tick
   std::int64_t worst_age_ns_ = 0;
-  Counters counters_;
+  std::uint64_t late_ = 0, foreign_ = 0;
+  drivers::Traffic traffic_;
   FaultText fault_text_;
 };
 

@@ -151,6 +151,7 @@ std::uint16_t towards_enabled(State state) noexcept {
 std::optional<std::int16_t> torque_raw(double torque_Nm, double rated_torque_Nm) noexcept {
   if (!std::isfinite(torque_Nm) || !(rated_torque_Nm > 0)) return std::nullopt;
   const double raw = std::round(1000 * torque_Nm / rated_torque_Nm);
+  if (std::isnan(raw)) return std::nullopt;  // both beyond all bounds
   return static_cast<std::int16_t>(std::clamp(raw, -32768.0, 32767.0));
 }
 

@@ -48,9 +48,17 @@ Result<std::string> Cia402Drive::connect(Conversation& conversation) {
             " per turn (608F), the config says " + std::to_string(options_.counts_per_turn) +
             " (can.counts_per_turn): torque would be wrong by that factor");
   }
+  if (found->max_torque_Nm < max_torque_Nm()) {
+    return hapticd::fail(ExitCode::unavailable,
+                         place_of(options_) + ": the drive limits its torque to " +
+                             std::to_string(found->max_torque_Nm) +
+                             " N m (6072), the actuator of " + options_.axis + " is to give " +
+                             std::to_string(max_torque_Nm()) +
+                             " N m: lower its max_force_N or max_torque_Nm, or raise the limit");
+  }
   heartbeat_ns_ = conversation.now_ns();
   knows_position_ = true;
-  set_up_ = true;
+  lost_ = false;
   return "CiA 402 drive, rated " + std::to_string(std::llround(1e3 * rated_Nm_)) + " mNm, " +
          std::to_string(std::llround(found->counts_per_turn)) + " counts per turn";
 }
@@ -96,7 +104,7 @@ void Cia402Drive::hear_emergency(const cia402::Emergency& emergency) noexcept {
 void Cia402Drive::hear_heartbeat(NodeState state, std::int64_t stamp_ns) noexcept {
   heartbeat_ns_ = stamp_ns;
   if (state == NodeState::operational) return;
-  set_up_ = false;
+  lost_ = true;
   fail("the drive is no longer operational but", cia402::word_of(state),
        "it lost what it was told: restart hapticd");
 }
@@ -115,9 +123,11 @@ std::uint16_t Cia402Drive::next_control() noexcept {
 }
 
 void Cia402Drive::command(double torque_Nm, Outbox& outbox) noexcept {
-  if (!set_up_) return fail("the drive restarted and lost what it was told", {}, "restart hapticd");
-  if (now_ns_ - heartbeat_ns_ > ns(3 * device_.heartbeat_every_s))
-    return fail("the drive sends no heartbeat any more");
+  if (now_ns_ - heartbeat_ns_ > ns(3 * device_.heartbeat_every_s)) {
+    lost_ = true;
+    return fail("the drive sends no heartbeat any more: it may have restarted", {},
+                "restart hapticd");
+  }
   armed_ = armed_ || running();
   const auto raw = cia402::torque_raw(armed_ ? torque_Nm : 0, rated_Nm_);
   outbox.add(cia402::rpdo1(options_.node, next_control(), raw.value_or(0)));
@@ -129,7 +139,8 @@ void Cia402Drive::command(double torque_Nm, Outbox& outbox) noexcept {
 
 void Cia402Drive::stop(bool must, Outbox& outbox) noexcept {
   control_ = kSwitchOff;
-  if (must) outbox.add(cia402::rpdo1(options_.node, kSwitchOff, 0));
+  // As long as it says that it runs, too: a frame may have been lost.
+  if (must || running()) outbox.add(cia402::rpdo1(options_.node, kSwitchOff, 0));
 }
 
 }  // namespace hapticd::can

@@ -29,7 +29,6 @@ class Cia402Drive final : public Drive {
 
   double rated_Nm_ = 0;
   bool leads_ = true;
-  bool set_up_ = false;  ///< and has not restarted since
   std::int64_t arming_since_ns_ = 0;
   std::int64_t heartbeat_ns_ = 0, sent_heartbeat_ns_ = 0;
   cia402::State state_ = cia402::State::not_ready;

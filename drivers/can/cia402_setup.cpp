@@ -13,6 +13,7 @@ constexpr double kAnswer_s = 0.15;
 constexpr Object kDeviceType{0x1000, 0}, kConsumerHeartbeat{0x1016, 1},
     kProducerHeartbeat{0x1017, 0}, kCyclePeriod{0x1006, 0}, kModes{0x6060, 0},
     kModesDisplay{0x6061, 0}, kSupportedModes{0x6502, 0}, kRatedTorque{0x6076, 0},
+    kMaxTorque{0x6072, 0}, kControl{0x6040, 0}, kTargetTorque{0x6071, 0},
     kAbortConnection{0x6007, 0}, kIncrements{0x608f, 1}, kTurns{0x608f, 2},
     kInterpolation{0x60c2, 1}, kInterpolationExponent{0x60c2, 2};
 constexpr std::uint32_t kProfile = 402;
@@ -119,18 +120,27 @@ Result<Found> identify(Sdo& sdo, const SetUp& wanted) {
                 wanted.place +
                     ": rated torque (6076) and encoder resolution (608F) must be set in "
                     "the drive, found 0");
-  return Found{.rated_torque_Nm = 1e-3 * *rated_mNm,
-               .counts_per_turn = static_cast<double>(*increments) / *turns};
+  const double rated_Nm = 1e-3 * *rated_mNm;
+  const auto most = sdo.read(kMaxTorque);  // optional: in thousandths of the rated one
+  return Found{.rated_torque_Nm = rated_Nm,
+               .counts_per_turn = static_cast<double>(*increments) / *turns,
+               .max_torque_Nm = most ? 1e-3 * *most * rated_Nm : INFINITY};
 }
 
+/// Whatever it was left with by who drove it before.
+Result<void> switch_off(Sdo& sdo) {
+  return sdo.write(kControl, 0, 2).and_then([&] { return sdo.write(kTargetTorque, 0, 2); });
+}
+
+/// A drive for which it cannot be set what it does when the host falls silent would keep its torque.
 Result<void> watch(Sdo& sdo, const SetUp& wanted) {
-  const auto watchdog_ms = std::llround(1e3 * wanted.watchdog_s);
+  const auto watchdog_ms = static_cast<std::int64_t>(std::ceil(1e3 * wanted.watchdog_s - 1e-6));
   return sdo.set(kProducerHeartbeat, std::llround(1e3 * wanted.heartbeat_every_s), 2)
       .and_then([&] {
         return sdo.set(kConsumerHeartbeat,
                        static_cast<std::int64_t>(wanted.host_node) << 16 | watchdog_ms, 4);
       })
-      .and_then([&] { return sdo.set_if_there(kAbortConnection, kQuickStop, 2); });
+      .and_then([&] { return sdo.set(kAbortConnection, kQuickStop, 2); });
 }
 
 /// One PDO: off, what it carries, when, on.
@@ -212,7 +222,8 @@ Result<Found> set_up(Conversation& conversation, const SetUp& wanted) {
   Sdo sdo(conversation, wanted);
   auto found = identify(sdo, wanted);
   if (!found) return found;
-  auto done = watch(sdo, wanted)
+  auto done = switch_off(sdo)
+                  .and_then([&] { return watch(sdo, wanted); })
                   .and_then([&] { return map_all(sdo, wanted); })
                   .and_then([&] { return choose_mode(sdo, wanted); })
                   .and_then([&] { return start(conversation, wanted); });

@@ -21,6 +21,7 @@ struct SetUp {
 struct Found {
   double rated_torque_Nm = 0;
   double counts_per_turn = 0;  ///< of the motor's encoder
+  double max_torque_Nm = 0;    ///< that the drive gives; infinite: it does not say
 };
 
 /// Leaves the drive operational, power stage off. Errors: nobody answers; no torque mode; an object that does not take

@@ -13,9 +13,12 @@ void Drive::set_armed(bool wanted) noexcept {
 void Drive::act(double torque_Nm, Outbox& outbox) noexcept {
   carried_Nm_ = 0;
   if (failed_) return stop_now(outbox);
+  if (arm_wanted_ && lost_)
+    return fail(
+        "the drive restarted: its position may count from elsewhere, and what it was told is gone",
+        {}, "restart hapticd");
   if (arm_wanted_) return command(torque_Nm, outbox);
   stop(stops_left_ > 0, outbox);
-  if (stops_left_ > 0) --stops_left_;
 }
 
 void Drive::stop_now(Outbox& outbox) noexcept {
@@ -25,8 +28,13 @@ void Drive::stop_now(Outbox& outbox) noexcept {
 }
 
 void Drive::sent(bool all) noexcept {
-  if (!all && arm_wanted_ && !armed_)
+  unsent_ticks_ = all ? 0 : unsent_ticks_ + 1;
+  if (all && !arm_wanted_ && stops_left_ > 0) --stops_left_;
+  if (all || !arm_wanted_) return;
+  if (!armed_)
     fail("the bus did not take a frame that arms it", {}, "is the queue of the interface full?");
+  else if (unsent_ticks_ > device_.most_unsent_ticks)
+    fail("the bus takes no torque any more", {}, "is the queue of the interface full?");
 }
 
 FaultText& Drive::blame() noexcept {

@@ -72,14 +72,14 @@ class Drive {
   void act(double torque_Nm, Outbox& outbox) noexcept;
   /// Zero torque and power off by the next frame, whatever it was about to do.
   void stop_now(Outbox& outbox) noexcept;
-  /// Whether the bus took what act() had for it. Arming does not go on over a gap.
+  /// Whether the bus took what act() had for it. Arming does not go on over a gap, and a torque must not stay for long.
   void sent(bool all) noexcept;
 
   void set_armed(bool wanted) noexcept;
   bool armed() const noexcept { return armed_; }
   /// Samples say where the axis is.
   bool knows_position() const noexcept { return knows_position_; }
-  /// No sample is asked for just now, since the drive must not hear anything.
+  /// Nothing is asked just now, since the drive must not hear anything.
   bool silent() const noexcept { return silent_; }
   bool failed() const noexcept { return failed_; }
   void clear_failure() noexcept { failed_ = false; }
@@ -122,6 +122,8 @@ class Drive {
   std::int64_t now_ns_ = 0;
   bool arm_wanted_ = false;
   bool armed_ = false;
+  /// It restarted: its position may count from elsewhere, and what it was told may be gone. Only connect() ends that.
+  bool lost_ = false;
   bool knows_position_ = false;
   bool silent_ = false;
   std::uint16_t limits_ = 0;
@@ -132,7 +134,8 @@ class Drive {
   static constexpr int kStops = 5;  ///< frames: a bus may lose one
 
   bool failed_ = false;
-  int stops_left_ = 0;
+  int stops_left_ = kStops;
+  int unsent_ticks_ = 0;
   double counts_ = 0;
   std::int64_t stamp_ns_ = 0;
   FaultText* text_ = nullptr;

@@ -130,7 +130,8 @@ void add(Writer& writer, const Query& query) noexcept {
   if (query.settings)
     writer.read(Register::maximum_torque, Format::real)
         .read(Register::watchdog_timeout, Format::real);
-  if ((query.tag & 1) != 0) writer.read(Register::millisecond_counter, Format::int8);
+  if ((query.tag & 1) != 0)
+    writer.read(Register::millisecond_counter, query.settings ? Format::int32 : Format::int8);
   if ((query.tag & 2) != 0) writer.read(Register::register_map_version, Format::int8);
 }
 
@@ -192,7 +193,8 @@ Frame ask(const Address& address, const Query& query) noexcept {
 Frame ask_identity(const Address& address) noexcept {
   Writer writer(to_servo(address, true));
   writer.read(Register::register_map_version, Format::int32)
-      .read(Register::serial_number, Format::int32);
+      .read(Register::serial_number, Format::int32)
+      .read(Register::millisecond_counter, Format::int32);
   return *writer.finish();
 }
 

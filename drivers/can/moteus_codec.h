@@ -98,9 +98,10 @@ class Writer {
 
 /// What is asked for beside mode, position and fault.
 struct Query {
-  bool motion = false;    ///< velocity and torque
-  bool supply = false;    ///< voltage and temperature
-  bool settings = false;  ///< what the running command has as maximum torque and watchdog
+  bool motion = false;  ///< velocity and torque
+  bool supply = false;  ///< voltage and temperature
+  bool settings =
+      false;  ///< what the running command has as maximum torque and watchdog; the time since it started
   /// 0 to 3: asks for other registers each, so that a reply says which question it answers.
   int tag = 0;
 };
@@ -129,7 +130,7 @@ class TorqueCommands {
 };
 Frame stop(const Address& address, const std::optional<Query>& query) noexcept;
 Frame ask(const Address& address, const Query& query) noexcept;
-/// Asks which register map the servo has, and its serial number.
+/// Asks which register map the servo has, its serial number, and for how long it has run.
 Frame ask_identity(const Address& address) noexcept;
 
 // -- from the servo

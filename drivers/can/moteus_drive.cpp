@@ -26,6 +26,12 @@ bool as_asked(const std::optional<double>& found, double asked) noexcept {
   return found && std::abs(*found - asked) <= 1e-6 * std::abs(asked);
 }
 
+/// Since it started; a 32-bit counter.
+std::uint32_t milliseconds_of(const moteus::Reply& reply) noexcept {
+  const double value = reply.milliseconds.value_or(0);
+  return std::abs(value) < 4e9 ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) : 0;
+}
+
 }  // namespace
 
 MoteusDrive::MoteusDrive(const DeviceOptions& device, const DriveOptions& options)
@@ -74,6 +80,9 @@ Result<std::string> MoteusDrive::connect(Conversation& conversation) {
                                  ": update its firmware");
       }
       knows_position_ = true;
+      lost_ = false;
+      up_ms_ = milliseconds_of(reply);
+      up_at_ns_ = conversation.now_ns();
       go(Stage::off);
       return "moteus, register map " + std::to_string(*reply.register_map_version);
     }
@@ -87,8 +96,9 @@ Result<std::string> MoteusDrive::connect(Conversation& conversation) {
 // -- loop
 
 moteus::Query MoteusDrive::next_query() noexcept {
-  tag_ = (tag_ + 1) & 3;
-  return {.settings = stage_ == Stage::starting, .tag = tag_};
+  const bool starting = stage_ == Stage::starting;
+  tag_ = starting ? (tag_ == 1 ? 3 : 1) : (tag_ + 1) & 3;  // those that ask for its time
+  return {.settings = starting, .tag = tag_};
 }
 
 void MoteusDrive::query(Outbox& outbox) noexcept {
@@ -140,11 +150,25 @@ void MoteusDrive::hear(const moteus::Reply& reply) noexcept {
 void MoteusDrive::hear_starting(const moteus::Reply& reply) noexcept {
   if (!arm_wanted_ || failed()) return;
   if (mode_ != kModePosition || !reply.maximum_torque || !reply.watchdog) return;
+  if (restarted(reply)) {
+    lost_ = true;
+    return;
+  }
   if (!as_asked(reply.watchdog, device_.watchdog_s))
     return fail("the servo has another watchdog time than it was told");
   if (!as_asked(reply.maximum_torque, max_torque_Nm()))
     return fail("the servo has another maximum torque than it was told");
   go(Stage::armed);
+}
+
+/// Its own time has not gone on as ours has.
+bool MoteusDrive::restarted(const moteus::Reply& reply) const noexcept {
+  constexpr std::int64_t kClocks =
+      50;  // may differ by a part of so many, and by a few milliseconds
+  const std::int64_t passed_ms = (now_ns_ - up_at_ns_) / 1'000'000;
+  const std::int64_t least_ms = passed_ms - passed_ms / kClocks - 5;
+  const auto gone_ms = static_cast<std::int32_t>(milliseconds_of(reply) - up_ms_);  // it wraps
+  return gone_ms < least_ms;
 }
 
 void MoteusDrive::go(Stage stage) noexcept {

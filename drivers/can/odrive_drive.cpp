@@ -52,8 +52,8 @@ Result<std::string> OdriveDrive::connect(Conversation& conversation) {
             ", expected 0.6: others have other error bits and messages; update it");
   }
   if (auto heard = listen(conversation); !heard) return tl::unexpected(heard.error());
-  watchdog_proved_ = false;
-  knows_position_ = false;
+  watchdog_proved_ = knows_position_ = lost_ = false;
+  heartbeat_ns_ = 0;
   go(Stage::off);
   return "ODrive " + dotted(version->hardware) + ", firmware " + dotted(version->firmware);
 }
@@ -155,7 +155,12 @@ std::int64_t OdriveDrive::heartbeat_limit_ns() const noexcept {
   return ns(3 * device_.heartbeat_every_s);
 }
 
+/// A drive that fell silent for long, or is initializing, was without power: where it counts from is not known any more.
 void OdriveDrive::hear(const odrive::Heartbeat& heartbeat, std::int64_t stamp_ns) noexcept {
+  constexpr std::uint32_t kInitializing = 1;
+  const bool first = heartbeat_ns_ == 0;
+  lost_ = lost_ || (!first && stamp_ns - heartbeat_ns_ > heartbeat_limit_ns()) ||
+          (heartbeat.error & kInitializing) != 0;
   heartbeat_ = heartbeat;
   heartbeat_ns_ = stamp_ns;
   faults_ = heartbeat.error;
@@ -163,6 +168,7 @@ void OdriveDrive::hear(const odrive::Heartbeat& heartbeat, std::int64_t stamp_ns
   if (heartbeat.error != 0) {
     fail("the drive reports an error", first_word(heartbeat.error));
   } else if (!closed_loop()) {
+    lost_ = true;
     fail("the drive left closed loop without an error: it restarted, or somebody set it idle");
   }
 }
@@ -170,7 +176,9 @@ void OdriveDrive::hear(const odrive::Heartbeat& heartbeat, std::int64_t stamp_ns
 void OdriveDrive::go(Stage stage) noexcept {
   stage_ = stage;
   since_ns_ = now_ns_;
+  step_ = 0;
   armed_ = stage == Stage::armed;
+  knows_position_ = knows_position_ || armed_;  // before closed loop it may say 0
   silent_ = stage == Stage::silence || stage == Stage::ask;
 }
 
@@ -195,16 +203,25 @@ void OdriveDrive::command(double torque_Nm, Outbox& outbox) noexcept {
   }
 }
 
+/// One frame a tick: a queue need hold no more of them than of torques.
 void OdriveDrive::prepare(Outbox& outbox) noexcept {
   const std::uint8_t node = options_.node;
-  outbox.add(odrive::set_controller_mode(node, odrive::ControlMode::torque,
-                                         odrive::InputMode::passthrough));
-  if (options_.max_current_A > 0)
-    outbox.add(odrive::set_limits(node, options_.max_velocity_turns_s, options_.max_current_A));
-  outbox.add(odrive::clear_errors(node));
-  outbox.add(odrive::set_input_torque(node, 0));
-  outbox.add(odrive::set_axis_state(node, AxisState::closed_loop));
-  go(Stage::enter);
+  switch (step_++) {
+    case 0:
+      return outbox.add(odrive::set_controller_mode(node, odrive::ControlMode::torque,
+                                                    odrive::InputMode::passthrough));
+    case 1:
+      if (options_.max_current_A > 0)
+        outbox.add(odrive::set_limits(node, options_.max_velocity_turns_s, options_.max_current_A));
+      return;
+    case 2:
+      return outbox.add(odrive::clear_errors(node));
+    case 3:
+      return outbox.add(odrive::set_input_torque(node, 0));
+    default:
+      outbox.add(odrive::set_axis_state(node, AxisState::closed_loop));
+      go(Stage::enter);
+  }
 }
 
 void OdriveDrive::enter(Outbox& outbox) noexcept {
@@ -212,7 +229,6 @@ void OdriveDrive::enter(Outbox& outbox) noexcept {
   if (heard_since(since_ns_) && heartbeat_.error != 0)
     return fail("the drive would not enter closed loop", first_word(heartbeat_.error));
   if (heard_since(since_ns_) && closed_loop() && heartbeat_.procedure_result != kBusy) {
-    knows_position_ = true;
     return go(watchdog_proved_ ? Stage::armed : Stage::silence);
   }
   if (now_ns_ - since_ns_ > kEnter_ns + heartbeat_limit_ns())

@@ -37,6 +37,7 @@ class OdriveDrive final : public Drive {
 
   Stage stage_ = Stage::off;
   std::int64_t since_ns_ = 0;  ///< in this stage
+  int step_ = 0;               ///< of it
   odrive::Heartbeat heartbeat_{};
   std::int64_t heartbeat_ns_ = 0;
   odrive::Errors errors_{};

@@ -34,7 +34,9 @@ struct DeviceOptions {
   double turnaround_s = 1e-4;   ///< a drive begins to answer so long after a question, at most
   double drive_delay_s = 1e-4;  ///< a torque acts so long after its frame came, at most
   double watchdog_s = 0.02;     ///< without a command for so long, a drive goes off by itself
-  double collect_s = 0;  ///< in phase: the loop waits so long for answers, from its tick's start
+  int most_unsent_ticks = 3;    ///< in a row, that the bus may not take a torque in
+  /// The loop waits so long for answers, from its tick's start; 0: no device of it is sampled in phase.
+  double collect_s = 0;
   double worst_sample_age_s = 0;  ///< at collect; an older sample is missing
   std::vector<DriveOptions> drives{};
 

@@ -48,11 +48,13 @@ std::string problem_of(int descriptor, const SocketOptions& options) {
     return name + " carries classic frames only and these drives speak CAN FD: ip link set " +
            name + " down, then up type can bitrate 1000000 dbitrate 5000000 fd on";
   const auto frames = static_cast<int>(options.frames_per_tick);
-  if (::ioctl(descriptor, SIOCGIFTXQLEN, &request) == 0 && request.ifr_qlen > 0 &&
-      request.ifr_qlen < frames)
-    return name + " queues " + std::to_string(request.ifr_qlen) + " frames and one tick sends " +
-           std::to_string(frames) + ": ip link set " + name + " txqueuelen " +
-           std::to_string(2 * frames);
+  if (::ioctl(descriptor, SIOCGIFTXQLEN, &request) != 0 || request.ifr_qlen == 0) return {};
+  const int most = std::max(20, 4 * frames);
+  if (request.ifr_qlen < frames || request.ifr_qlen > most)
+    return name + " queues " + std::to_string(request.ifr_qlen) + " frames, expected " +
+           std::to_string(frames) + " to " + std::to_string(most) +
+           ": less loses frames, more keeps old torques when the bus stands; ip link set " + name +
+           " txqueuelen " + std::to_string(std::max(10, 2 * frames));
   return {};
 }
 
@@ -246,8 +248,13 @@ void Socket::note(int error) noexcept {
     case ENETDOWN:
       hardware_ = {};  // an adapter's clock may begin anew
       return worsen(Trouble::down);
-    default:  // ENXIO, ENODEV, EPIPE, ...
+    case ENXIO:
+    case ENODEV:
+    case EPIPE:
+    case ECONNRESET:
       return worsen(Trouble::gone);
+    default:  // ENOMEM and the like: counted as not sent
+      return;
   }
 }
 

@@ -59,7 +59,7 @@ inline std::string three_axes(const Bus& bus) {
   }
   return std::string("version: 1\ndevices:\n  - name: arm\n    driver: ") + bus.driver +
          "\n    can: {interface: can0, watchdog_s: 0.02, timing: " + bus.timing +
-         "}\n    latency_s: 0.003\n    kinematics: {cartesian: {directions: [x, y, z]}}\n    sim: "
+         "}\n    latency_s: 0.004\n    kinematics: {cartesian: {directions: [x, y, z]}}\n    sim: "
          "{hand: {mass_kg: 0.1, damping_Ns_m: 3, script: [{at_s: 0, force_N: -1}]}, axes: [" +
          truth + "]}\n    axes:" + axes + R"(
 scene:

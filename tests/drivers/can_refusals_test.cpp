@@ -120,6 +120,10 @@ TEST(CanRefusals, Cia402WithoutATorqueMode) {
   expect_no_connection(kCia402, changed([](Emulation& e) { e.cia402.supports_cst = false; }),
                        "no cyclic synchronous torque");
 }
+TEST(CanRefusals, Cia402ThatGivesLessThanItsActuatorIsToGive) {
+  expect_no_connection(kCia402, changed([](Emulation& e) { e.cia402.max_torque_Nm = 0.004; }),
+                       "limits its torque");
+}
 TEST(CanRefusals, ACanopenDeviceThatIsNoDrive) {
   expect_no_connection(kCia402, changed([](Emulation& e) { e.cia402.device_type = 0x00010191; }),
                        "profile 401, expected 402");

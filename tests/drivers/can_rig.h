@@ -21,6 +21,7 @@
 #include "sim/can/emulated_device.h"
 #include "sim/can/moteus_drive.h"
 #include "sim/can/odrive_drive.h"
+#include "tests/drivers/system_calls.h"
 
 namespace hapticd::test {
 
@@ -189,6 +190,8 @@ class CanRig {
     next_start_ns_ = (now_ns_ / period_ns_ + 1) * period_ns_;
     tick_ += duration_ns / period_ns_;
   }
+  /// The kernel takes what is asked and refuses what is commanded.
+  void drop_commands(bool dropped) { drop_commands_ = dropped; }
   /// The queue towards the bus takes a few frames only.
   void small_queue() {
     const int bytes = 1;  // the kernel makes it the least that it has
@@ -306,7 +309,9 @@ class CanRig {
     int wait_fd() const noexcept override { return rig_.device_.wait_fd(); }
     void command(std::span<const double> effort, std::span<double> delivered) noexcept override {
       rig_.waiting_ = false;
+      system_calls().queue_full = rig_.drop_commands_;
       rig_.device_.command(effort, delivered);
+      system_calls().queue_full = false;
     }
     void set_armed(bool armed) noexcept override { rig_.device_.set_armed(armed); }
     void stop() noexcept override {
@@ -334,6 +339,7 @@ class CanRig {
   daemon::Cycle cycle_;
   std::int64_t now_ns_ = 0, next_start_ns_ = 0, period_ns_ = 0, tick_ = 0;
   bool waiting_ = false;
+  bool drop_commands_ = false;
 };
 
 }  // namespace hapticd::test

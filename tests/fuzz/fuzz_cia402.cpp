@@ -122,11 +122,11 @@ void decode(Input& input) {
 
 void check_torque(double torque_Nm, double rated_Nm) {
   const auto raw = cia402::torque_raw(torque_Nm, rated_Nm);
-  must(raw.has_value() == (std::isfinite(torque_Nm) && rated_Nm > 0), "refused if no number");
+  const double steps = 1000 * torque_Nm / rated_Nm;
+  must(raw.has_value() == (std::isfinite(torque_Nm) && rated_Nm > 0 && !std::isnan(steps)),
+       "refused if no number");
   if (!raw) return;
   // Half a step, or saturated; what is scaled first may round once.
-  const double steps = 1000 * torque_Nm / rated_Nm;
-  if (std::isnan(steps)) return;
   const double clamped = std::clamp(steps, -32768.0, 32767.0);
   must(std::abs(*raw - clamped) <= 0.5, "within half a step");
   const can::Frame frame = cia402::rpdo1(1, kEnable, *raw);

@@ -92,13 +92,13 @@ TEST_P(CanDevice, MakesForcesAndIsOffAfterwards) {
   }
   EXPECT_GE(loop.fresh, 0.95 * kTicks);
   EXPECT_NEAR(drive.torque_Nm(), 3 / (2 * M_PI * 20), 1e-4);
-  const can::SocketCounters counted = loop.device().socket_counters();
+  const drivers::Traffic& counted = *loop.device().traffic();
   EXPECT_EQ(counted.not_sent, 0U);
   EXPECT_EQ(counted.lost, 0U);
-  EXPECT_EQ(loop.device().counters().foreign, 0U);
+  EXPECT_EQ(counted.foreign.load(), 0U);
   std::cout << "# " << kind().name << ": armed after " << (armed_ns - start_ns) / kMillisecond
             << " ms, " << loop.fresh << " of " << kTicks << " samples fresh, the last "
-            << loop.sample.age_ns / 1000 << " us old, " << loop.device().counters().late
+            << loop.sample.age_ns / 1000 << " us old, " << loop.device().traffic()->late.load()
             << " late, ticks end after at most " << loop.latest_ns / 1000 << " us\n";
 
   loop.device().disconnect();
@@ -153,7 +153,7 @@ TEST_P(CanDevice, ABusThatIsTooSlowArmsNothing) {
   ASSERT_EQ(loop.connect(), "");
   link.netem("rate 20kbit limit 2");
   EXPECT_FALSE(loop.arm());
-  EXPECT_GT(loop.device().socket_counters().not_sent, 0U);
+  EXPECT_GT(loop.device().traffic()->not_sent.load(), 0U);
   EXPECT_FALSE(drive.enabled() && drive.torque_Nm() != 0);
 }
 
