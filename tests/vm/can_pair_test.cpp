@@ -122,6 +122,18 @@ TEST(Pair, ADriveIsArmedAndDriven) {
   EXPECT_FALSE(drive.enabled());
 }
 
+/// Where the bus stands for a while, a long queue keeps torques that are old when it goes on.
+TEST(Pair, AQueueThatIsTooLongIsRefused) {
+  shell(ip("link set can0 txqueuelen 100"));
+  const auto refused = Socket::open({.interface = "can0", .frames_per_tick = 3});
+  shell(ip("link set can0 txqueuelen 10"));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("can0 queues 100 frames, expected 3 to 20"),
+            std::string::npos)
+      << refused.error().text;
+  EXPECT_TRUE(Socket::open({.interface = "can0", .frames_per_tick = 3}));
+}
+
 TEST(Pair, OffAndOnAgainTheSameSocketWorks) {
   Socket near = open_all("can0"), far = open_all("can1");
   shell(ip("link set can0 down"));

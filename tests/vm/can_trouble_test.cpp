@@ -130,7 +130,7 @@ TEST(CanOpen, AQueueHoldsWhatATickSends) {
   link.queue_length(4);
   EXPECT_EQ(open_error({.interface = link.name(), .frames_per_tick = 4}), "");
   expect_words(open_error({.interface = link.name(), .frames_per_tick = 5}),
-               {"open0 queues 4 frames and one tick sends 5", "ip link set open0 txqueuelen 10"});
+               {"open0 queues 4 frames, expected 5 to 20", "ip link set open0 txqueuelen 10"});
 }
 
 }  // namespace
