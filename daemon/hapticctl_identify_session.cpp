@@ -75,6 +75,7 @@ class Loop {
       begin_tick();
       device_.command(effort_, delivered_);
       if (aux_.armed) return true;
+      if (aux_.faulted) return false;
     }
     return false;
   }
@@ -168,8 +169,11 @@ class Loop {
 Result<void> run(Loop& loop, const IdentifySetup& setup, const std::atomic<bool>& interrupt,
                  const IdentifyProgress& progress) {
   const identify::Runner& runner = loop.session().runner;
-  if (!loop.arm(interrupt) && !interrupt.load())
-    return fail(ExitCode::unavailable, "the power stage of the device did not come on");
+  if (!loop.arm(interrupt) && !interrupt.load()) {
+    const std::string why(setup.device->fault_text());
+    return fail(ExitCode::unavailable, "the power stage of the device did not come on" +
+                                           (why.empty() ? why : "; the driver says: " + why));
+  }
   for (std::int64_t tick = 0; runner.ended() == identify::Ended::running; ++tick) {
     if (interrupt.load()) return fail(ExitCode::try_again, "interrupted; nothing was written");
     if (auto done = loop.tick(); !done) return done;

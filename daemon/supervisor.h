@@ -45,6 +45,7 @@ class Supervisor {
   // supervisor_watch.cpp: what is seen of the loop
   void look();
   void enter(State next);
+  std::string fault_words() const;
   void note_fault();
   void follow_clear();
   void watch_heartbeat(std::int64_t now_ns);

@@ -124,7 +124,7 @@ Json Supervisor::status() const {
                      {"found", fault.found},
                      {"allowed", fault.allowed},
                      {"unit", fault_unit(fault, engine_->program().spec())},
-                     {"text", describe_fault(fault, engine_->program().spec())}};
+                     {"text", fault_words()}};
   } else {
     json["fault"] = nullptr;
   }

@@ -50,6 +50,14 @@ void Supervisor::enter(State next) {
   if (!engine_->offered()) notify_.status(status_sentence());
 }
 
+/// Of the fault that stands, with the driver's own.
+std::string Supervisor::fault_words() const {
+  const std::uint16_t device = servo_.fault.device;
+  const bool by_driver = servo_.fault.code == Fault::device && device < engine_->devices().size();
+  return describe_fault(servo_.fault, engine_->program().spec(),
+                        by_driver ? engine_->device(device).fault_text() : std::string_view());
+}
+
 /// Tells each fault once, counts it by kind.
 void Supervisor::note_fault() {
   if (state_ != State::fault) {
@@ -58,11 +66,7 @@ void Supervisor::note_fault() {
   }
   if (same(told_fault_, servo_.fault)) return;
   told_fault_ = servo_.fault;
-  const std::uint16_t device = servo_.fault.device;
-  const bool by_driver = servo_.fault.code == Fault::device && device < engine_->devices().size();
-  const std::string text =
-      describe_fault(servo_.fault, engine_->program().spec(),
-                     by_driver ? engine_->device(device).fault_text() : std::string_view());
+  const std::string text = fault_words();
   log_error("fault {}", text);
   auto known = std::find_if(faults_.begin(), faults_.end(), [&](const FaultCount& fault) {
     return fault.code == servo_.fault.code;
@@ -94,8 +98,7 @@ void Supervisor::follow_clear() {
     engine_->shared().enable.store(true);
   } else if (servo_.tick > *clearing_since_tick_ + kTicksToClear) {
     clearing_since_tick_.reset();
-    log_error("enable: the cause of the fault stands: {}",
-              describe_fault(servo_.fault, engine_->program().spec()));
+    log_error("enable: the cause of the fault stands: {}", fault_words());
   }
 }
 

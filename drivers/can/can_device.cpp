@@ -60,6 +60,8 @@ Result<drivers::DeviceInfo> CanDevice::connect() {
     disconnect();
     return tl::unexpected(found.error());
   }
+  for (Axis& axis : axes_)
+    axis.drive->begin_tick(host_.now_ns());  // it may be armed before the first one
   make_wait_descriptor();
   return drivers::DeviceInfo{.model = *found,
                              .serial = {},

@@ -67,6 +67,13 @@ TEST_P(CanSeam, ThreeAxesOnTwoBusesEachTheirOwnWay) {
   }
 }
 
+TEST_P(CanSeam, MayBeArmedBeforeTheFirstTick) {
+  CanRig rig(wall_on(GetParam()), usual());
+  ASSERT_TRUE(rig.connect());
+  rig.device().set_armed(true);
+  EXPECT_TRUE(rig.enable()) << rig.fault_text();
+}
+
 TEST_P(CanSeam, LeavesTheDrivesOffWhenItDisconnects) {
   CanRig rig(wall_on(GetParam()), usual());
   ASSERT_TRUE(rig.connect());
