@@ -96,6 +96,15 @@ bool any_in_phase(const Compilation& compilation) {
 void check_times(Compilation& compilation, const DevicePlace& place, can::DeviceOptions& device) {
   const can::BusLoad bus = can::worst_of(device, compilation.buses);
   device.collect_s = any_in_phase(compilation) ? compilation.collect_s : 0;
+  if (device.timing == Timing::reply_to_command &&
+      can::worst_reply_s(device, bus) > device.period_s)
+    compilation.refuse(
+        place.path + ".can.timing",
+        "answers to the commands of a tick must have come when the next one begins; at "
+        "worst they take " +
+            up_to_us(can::worst_reply_s(device, bus)) +
+            (device.collect_s > 0 ? ", since the loop waits for devices in phase first" : "") +
+            ": use more interfaces, a lower loop.rate_Hz, or in_phase");
   device.worst_sample_age_s = can::worst_sample_age_s(device, bus);
   const double latency_s = can::worst_latency_s(device, bus);
   if (place.device.latency_s >= latency_s) return;

@@ -153,6 +153,10 @@ double worst_answer_s(const DeviceOptions& device, const BusLoad& bus) {
   return kWake_s + device.turnaround_s + bus.answers_s;
 }
 
+double worst_reply_s(const DeviceOptions& device, const BusLoad& bus) {
+  return device.collect_s + kWake_s + kHost_s + bus.busiest_s + device.turnaround_s;
+}
+
 double worst_sample_age_s(const DeviceOptions& device, const BusLoad& bus) {
   switch (device.timing) {
     case Timing::in_phase:  // of one that came first, when the last one comes at the deadline

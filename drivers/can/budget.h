@@ -34,5 +34,8 @@ double worst_sample_age_s(const DeviceOptions& device, const BusLoad& bus);
 double worst_latency_s(const DeviceOptions& device, const BusLoad& bus);
 /// In phase: from the start of a tick until the last answer.
 double worst_answer_s(const DeviceOptions& device, const BusLoad& bus);
+/// Reply to command: from the start of a tick until the last answer to its commands, which may go out as late as devices
+/// that are sampled in phase make them.
+double worst_reply_s(const DeviceOptions& device, const BusLoad& bus);
 
 }  // namespace hapticd::can

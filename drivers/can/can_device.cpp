@@ -300,7 +300,7 @@ void CanDevice::command_bus(Bus& bus, std::span<const double> effort,
     Axis& axis = axes_[i];
     const bool all = axis.frames_end <= sent;
     if (all) axis.delivered_Nm = axis.drive->carried_Nm();
-    if (axis.frames_end > axis.first_frame) axis.drive->sent(all);
+    if (axis.frames_end > axis.first_frame && !bus_failed_) axis.drive->sent(all);
     delivered[i] = axis.drive->armed() ? axis.delivered_Nm / axis.drive->torque_per_effort() : 0;
   }
 }

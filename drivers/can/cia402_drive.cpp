@@ -1,5 +1,6 @@
 #include "drivers/can/cia402_drive.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/can/cia402_setup.h"
@@ -48,7 +49,7 @@ Result<std::string> Cia402Drive::connect(Conversation& conversation) {
             " per turn (608F), the config says " + std::to_string(options_.counts_per_turn) +
             " (can.counts_per_turn): torque would be wrong by that factor");
   }
-  if (found->max_torque_Nm < max_torque_Nm()) {
+  if (found->max_torque_Nm * (1 + 1e-9) < max_torque_Nm()) {
     return hapticd::fail(ExitCode::unavailable,
                          place_of(options_) + ": the drive limits its torque to " +
                              std::to_string(found->max_torque_Nm) +
@@ -123,7 +124,8 @@ std::uint16_t Cia402Drive::next_control() noexcept {
 }
 
 void Cia402Drive::command(double torque_Nm, Outbox& outbox) noexcept {
-  if (now_ns_ - heartbeat_ns_ > ns(3 * device_.heartbeat_every_s)) {
+  // Before, other drives may have been connected, and nobody heard it.
+  if (now_ns_ - std::max(heartbeat_ns_, arming_since_ns_) > ns(3 * device_.heartbeat_every_s)) {
     lost_ = true;
     return fail("the drive sends no heartbeat any more: it may have restarted", {},
                 "restart hapticd");

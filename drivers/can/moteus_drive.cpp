@@ -83,6 +83,7 @@ Result<std::string> MoteusDrive::connect(Conversation& conversation) {
       lost_ = false;
       up_ms_ = milliseconds_of(reply);
       up_at_ns_ = conversation.now_ns();
+      heard_ns_ = 0;
       go(Stage::off);
       return "moteus, register map " + std::to_string(*reply.register_map_version);
     }
@@ -96,9 +97,9 @@ Result<std::string> MoteusDrive::connect(Conversation& conversation) {
 // -- loop
 
 moteus::Query MoteusDrive::next_query() noexcept {
-  const bool starting = stage_ == Stage::starting;
-  tag_ = starting ? (tag_ == 1 ? 3 : 1) : (tag_ + 1) & 3;  // those that ask for its time
-  return {.settings = starting, .tag = tag_};
+  asks_time_ = stage_ != Stage::armed;
+  tag_ = asks_time_ ? (tag_ == 1 ? 3 : 1) : (tag_ + 1) & 3;  // 1 and 3 ask for its time
+  return {.settings = asks_time_, .tag = tag_};
 }
 
 void MoteusDrive::query(Outbox& outbox) noexcept {
@@ -132,6 +133,7 @@ Heard MoteusDrive::take(const Frame& frame, std::int64_t stamp_ns) noexcept {
 }
 
 void MoteusDrive::hear(const moteus::Reply& reply) noexcept {
+  watch_time(reply);
   if (!reply.mode || !reply.fault) return;
   mode_ = code_of(*reply.mode);
   const int code = code_of(*reply.fault);
@@ -142,18 +144,15 @@ void MoteusDrive::hear(const moteus::Reply& reply) noexcept {
     return fail("the servo reports a fault", moteus::fault_word(code));
   if (is(reply.mode, Mode::timeout)) return fail("the servo's watchdog expired");
   if (stage_ == Stage::starting) return hear_starting(reply);
-  if (mode_ != kModePosition)
-    fail("the servo left its torque mode: it restarted, or somebody stopped it");
+  if (mode_ == kModePosition) return;
+  lost_ = true;
+  fail("the servo left its torque mode: it restarted, or somebody stopped it");
 }
 
 /// Running, and with the settings that were asked for. It may be to stop by now.
 void MoteusDrive::hear_starting(const moteus::Reply& reply) noexcept {
   if (!arm_wanted_ || failed()) return;
   if (mode_ != kModePosition || !reply.maximum_torque || !reply.watchdog) return;
-  if (restarted(reply)) {
-    lost_ = true;
-    return;
-  }
   if (!as_asked(reply.watchdog, device_.watchdog_s))
     return fail("the servo has another watchdog time than it was told");
   if (!as_asked(reply.maximum_torque, max_torque_Nm()))
@@ -161,14 +160,24 @@ void MoteusDrive::hear_starting(const moteus::Reply& reply) noexcept {
   go(Stage::armed);
 }
 
-/// Its own time has not gone on as ours has.
-bool MoteusDrive::restarted(const moteus::Reply& reply) const noexcept {
-  constexpr std::int64_t kClocks =
-      50;  // may differ by a part of so many, and by a few milliseconds
+/// A servo whose own time did not go on as ours, or that was silent for long, was without power: where it counts from is
+/// not known any more.
+void MoteusDrive::watch_time(const moteus::Reply& reply) noexcept {
+  constexpr std::int64_t kClocks = 50;  // may differ by a part of so many
+  constexpr std::int64_t kOnItsWay_ms =
+      500;  // a reply may have waited; a servo that restarted begins at 0
+  constexpr std::int64_t kLongest_ns = 1'000'000'000;
+  lost_ = lost_ || (heard_ns_ != 0 && now_ns_ - heard_ns_ > kLongest_ns);
+  heard_ns_ = now_ns_;
+  if (!asks_time_ || !reply.milliseconds) return;
   const std::int64_t passed_ms = (now_ns_ - up_at_ns_) / 1'000'000;
-  const std::int64_t least_ms = passed_ms - passed_ms / kClocks - 5;
-  const auto gone_ms = static_cast<std::int32_t>(milliseconds_of(reply) - up_ms_);  // it wraps
-  return gone_ms < least_ms;
+  const std::int64_t allowed_ms = passed_ms / kClocks + kOnItsWay_ms;
+  const std::uint32_t up_ms = milliseconds_of(reply);  // it wraps, and so does the difference
+  const auto ahead_ms =
+      static_cast<std::int32_t>(up_ms - up_ms_ - static_cast<std::uint32_t>(passed_ms));
+  lost_ = lost_ || ahead_ms < -allowed_ms;
+  up_ms_ = up_ms;
+  up_at_ns_ = now_ns_;
 }
 
 void MoteusDrive::go(Stage stage) noexcept {

@@ -24,7 +24,7 @@ class MoteusDrive final : public Drive {
   void go(Stage stage) noexcept;
   bool of_another_master(const Frame& frame) const noexcept;
   void hear(const moteus::Reply& reply) noexcept;
-  bool restarted(const moteus::Reply& reply) const noexcept;
+  void watch_time(const moteus::Reply& reply) noexcept;
   void hear_starting(const moteus::Reply& reply) noexcept;
   /// No torque yet, and the settings are asked for.
   void start(Outbox& outbox) noexcept;
@@ -39,8 +39,10 @@ class MoteusDrive final : public Drive {
   std::int64_t since_ns_ = 0;  ///< in this stage
   int tag_ = 0;                ///< of the last question
   int mode_ = -1;              ///< as last heard
-  std::uint32_t up_ms_ = 0;    ///< the servo's own time when it was found
+  bool asks_time_ = false;     ///< the last question does, in full
+  std::uint32_t up_ms_ = 0;    ///< the servo's own time when it was last asked for
   std::int64_t up_at_ns_ = 0;
+  std::int64_t heard_ns_ = 0;
   const moteus::TorqueCommands commands_;
 };
 

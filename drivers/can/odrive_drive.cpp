@@ -158,9 +158,9 @@ std::int64_t OdriveDrive::heartbeat_limit_ns() const noexcept {
 /// A drive that fell silent for long, or is initializing, was without power: where it counts from is not known any more.
 void OdriveDrive::hear(const odrive::Heartbeat& heartbeat, std::int64_t stamp_ns) noexcept {
   constexpr std::uint32_t kInitializing = 1;
-  const bool first = heartbeat_ns_ == 0;
-  lost_ = lost_ || (!first && stamp_ns - heartbeat_ns_ > heartbeat_limit_ns()) ||
-          (heartbeat.error & kInitializing) != 0;
+  // Before it was armed for the first time nothing of it is relied on yet.
+  const bool gap = heartbeat_ns_ != 0 && stamp_ns - heartbeat_ns_ > heartbeat_limit_ns();
+  lost_ = lost_ || (watchdog_proved_ && (gap || (heartbeat.error & kInitializing) != 0));
   heartbeat_ = heartbeat;
   heartbeat_ns_ = stamp_ns;
   faults_ = heartbeat.error;

@@ -237,7 +237,11 @@ void Socket::read_control(msghdr& header, Received& received) noexcept {
       if (const std::int64_t hardware_ns = ns_of(stamps.ts[2]); hardware_ns != 0)
         received.stamp_ns = hardware_.bring(hardware_ns, received.stamp_ns);
       else if (const std::int64_t software_ns = ns_of(stamps.ts[0]); software_ns != 0)
-        received.stamp_ns = std::min(received.stamp_ns, software_ns - day_ahead_ns());
+        // Not before the frame that came before, though the clock of the day may have been set between.
+        received.stamp_ns =
+            std::clamp(software_ns - day_ahead_ns(), std::min(last_stamp_ns_, received.stamp_ns),
+                       received.stamp_ns);
+      last_stamp_ns_ = received.stamp_ns;
     }
   }
 }

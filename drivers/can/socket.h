@@ -91,6 +91,7 @@ class Socket {
   Trouble trouble_ = Trouble::none;
   SocketCounters counters_{};
   std::uint32_t kernel_lost_ = 0;
+  std::int64_t last_stamp_ns_ = 0;
   StampClock hardware_{};
   std::array<Received, kMost> received_{};
 };

@@ -242,15 +242,34 @@ TEST_P(CanFaults, ADriveThatRestarts) {
 
 /// The same without forces: what an e-stop that cuts the drives' power leaves behind.
 TEST_P(CanFaults, ADriveThatWasWithoutPowerWhileNothingWasArmed) {
-  CanRig rig(wall_on(GetParam()), usual_emulation());
+  const auto rig = pressing(GetParam());
+  rig->input.enable = false;
+  ASSERT_TRUE(rig->run_until([&] { return rig->mode() == Mode::idle; }, 300));
+  rig->drives().drive(0).mute(true);
+  for (int i = 0; i < 1200; ++i) rig->tick();
+  rig->drives().drive(0).reset(rig->now_ns());
+  rig->drives().drive(0).mute(false);
+  EXPECT_FALSE(rig->recover());
+  EXPECT_NE(rig->fault_text().find("restart hapticd"), std::string::npos) << rig->fault_text();
+}
+
+/// A moteus says for how long it has run: a short break is found, too, however long it has been watched.
+TEST(CanRestart, AMoteusThatRestartedInAMomentIsNotArmed) {
+  const Bus bus{"moteus", "reply_to_command"};
+  CanRig rig(wall_on(bus));
   ASSERT_TRUE(rig.connect());
-  for (int i = 0; i < 50; ++i) rig.tick();
-  rig.drives().drive(0).mute(true);
-  for (int i = 0; i < 400; ++i) rig.tick();
+  for (int i = 0; i < 20'000; ++i) rig.tick();
   rig.drives().drive(0).reset(rig.now_ns());
-  rig.drives().drive(0).mute(false);
   EXPECT_FALSE(rig.recover());
   EXPECT_NE(rig.fault_text().find("restart hapticd"), std::string::npos) << rig.fault_text();
+}
+
+/// Devices that are connected later take their time, and their buses fill meanwhile.
+TEST_P(CanFaults, ALongWayFromConnectionToTheFirstTickLosesNoDrive) {
+  CanRig rig(wall_on(GetParam()), usual_emulation());
+  ASSERT_TRUE(rig.connect());
+  rig.stand_still(3'000'000'000);
+  EXPECT_TRUE(rig.enable()) << rig.fault_text();
 }
 
 TEST_P(CanFaults, ALoopThatStandsStillLeavesADriveThatWentOffByItself) {
