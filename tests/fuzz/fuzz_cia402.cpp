@@ -106,6 +106,8 @@ void check_accepted(const cia402::Decoded& decoded, const can::Frame& frame, std
   }
 }
 
+}  // namespace
+
 void decode(Input& input) {
   const std::uint8_t node = node_from(input);
   const Cia402Wire wire(node, 1);
@@ -119,6 +121,8 @@ void decode(Input& input) {
   must(!decoded.tpdo1 && !decoded.tpdo2 && !decoded.emergency && !decoded.guard && !decoded.sdo,
        "only what is accepted has a message");
 }
+
+namespace {
 
 void check_torque(double torque_Nm, double rated_Nm) {
   const auto raw = cia402::torque_raw(torque_Nm, rated_Nm);
@@ -150,6 +154,8 @@ void check_sdo_write(Input& input, std::uint8_t node) {
   must(frame->size == 8 && frame->id == 0x600u + node, "a request to the node");
 }
 
+}  // namespace
+
 void encode(Input& input) {
   const std::uint8_t node = node_from(input);
   const double torque_Nm = input.number();
@@ -180,21 +186,6 @@ void session(Input& input) {
                               1'000'000'000'000);
   can::Cia402Drive drive(device, options);
   run({input, drive, servo, Cia402Wire(node, kRated_Nm), device});
-}
-
-}  // namespace
-
-void codec(Input& input) {
-  const std::uint8_t what = input.byte();
-  if (what % 3 == 1)
-    encode(input);
-  else
-    decode(input);
-}
-
-void drive(Input& input) {
-  (void)input.byte();  // what a codec would do with it
-  session(input);
 }
 
 }  // namespace hapticd::fuzz

@@ -177,6 +177,8 @@ void check_reply(const moteus::Decoded& decoded, const Scan& scan) {
   if (r.serial_number) check(0x120, r.serial_number);
 }
 
+}  // namespace
+
 void decode(Input& input) {
   const moteus::Address address = address_from(input);
   const MoteusWire wire(address, 1);
@@ -202,6 +204,8 @@ void decode(Input& input) {
   if (decoded.status == Status::unknown_subframe) must(scan.strange, "something else is in it");
   if (decoded.status == Status::truncated) must(!scan.whole, "it is cut off");
 }
+
+namespace {
 
 void check_torque_command(Input& input, const moteus::Address& address) {
   const moteus::TorqueCommand command{.torque_Nm = input.number(),
@@ -291,6 +295,8 @@ void check_writer(Input& input, const moteus::Address& address) {
   }
 }
 
+}  // namespace
+
 void encode(Input& input) {
   const moteus::Address address = address_from(input);
   check_torque_command(input, address);
@@ -319,21 +325,6 @@ void session(Input& input) {
                               1'000'000'000'000);
   can::MoteusDrive drive(device, options);
   run({input, drive, servo, MoteusWire(address, drive.max_torque_Nm()), device});
-}
-
-}  // namespace
-
-void codec(Input& input) {
-  const std::uint8_t what = input.byte();
-  if (what % 3 == 1)
-    encode(input);
-  else
-    decode(input);
-}
-
-void drive(Input& input) {
-  (void)input.byte();  // what a codec would do with it
-  session(input);
 }
 
 }  // namespace hapticd::fuzz

@@ -71,11 +71,14 @@ void check_accepted(const odrive::Message& message, const can::Frame& frame) {
   }
 }
 
+}  // namespace
+
 void decode(Input& input) {
   const auto node = static_cast<std::uint8_t>(input.byte() % (odrive::kMaxNode + 1));
   const OdriveWire wire(node);
   const can::Frame frame =
       frame_of(input, [&](auto& own, std::uint32_t number) { wire.own(own, number); });
+  must(odrive::error_word(frame.data[0]).size() < 64, "a word of an error");
   const odrive::Decoded decoded = odrive::decode(frame, node);
   const bool mine = !frame.extended && frame.id >> 5 == node;
   must((decoded.received == Received::error_frame) == frame.error, "error frames are such");
@@ -103,6 +106,8 @@ void decode(Input& input) {
   must(false, "a verdict that there is");
 }
 
+namespace {
+
 /// A value and a frame that should carry it as two or three fields.
 template <class... Values>
 bool must_be_sent(const std::optional<can::Frame>& frame, std::uint32_t id, Values... values) {
@@ -120,6 +125,8 @@ void must_be_steps(const can::Frame& frame, std::size_t at, double wanted) {
   must(std::abs(found - clamped) <= kStep, "within a step");
   must(std::abs(found) <= std::abs(wanted) * (1 + 1e-12), "towards zero");
 }
+
+}  // namespace
 
 void encode(Input& input) {
   const auto node = static_cast<std::uint8_t>(input.byte() % (odrive::kMaxNode + 1));
@@ -166,22 +173,6 @@ void session(Input& input) {
                               1'000'000'000'000);
   can::OdriveDrive drive(device, options);
   run({input, drive, servo, OdriveWire(node), device});
-}
-
-}  // namespace
-
-void codec(Input& input) {
-  const std::uint8_t what = input.byte();
-  must(can::odrive::error_word(what).size() < 64, "a word of an error");
-  if (what % 3 == 1)
-    encode(input);
-  else
-    decode(input);
-}
-
-void drive(Input& input) {
-  (void)input.byte();  // what a codec would do with it
-  session(input);
 }
 
 }  // namespace hapticd::fuzz

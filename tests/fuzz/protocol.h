@@ -4,9 +4,11 @@
 
 namespace hapticd::fuzz {
 
-/// One frame, decoded or encoded.
-void codec(Input& input);
+/// A frame is decoded.
+void decode(Input& input);
+/// Frames are encoded.
+void encode(Input& input);
 /// Many ticks of a drive.
-void drive(Input& input);
+void session(Input& input);
 
 }  // namespace hapticd::fuzz
