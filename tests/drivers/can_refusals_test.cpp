@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "drivers/can/cia402_setup.h"
 #include "drivers/can/scan.h"
 #include "tests/drivers/can_configs.h"
 #include "tests/drivers/can_rig.h"
@@ -154,14 +155,42 @@ TEST(CanRefusals, NothingMovesWhileADriveIsArmed) {
 class VirtualConversation final : public can::Conversation {
  public:
   explicit VirtualConversation(CanRig& rig) : rig_(rig), inner_(rig.socket(), rig.host()) {}
-  void send(const can::Frame& frame) override { inner_.send(frame); }
+  void send(const can::Frame& frame) override {
+    sent.push_back(frame);
+    inner_.send(frame);
+  }
   std::optional<can::Frame> next(double timeout_s) override { return inner_.next(timeout_s); }
   std::int64_t now_ns() override { return rig_.host().now_ns(); }
+
+  std::vector<can::Frame> sent;
 
  private:
   CanRig& rig_;
   can::SocketConversation inner_;
 };
+
+/// Whoever drove it before may have left it running: before anything else it is switched off, its torque taken back, and
+/// only then it becomes operational.
+TEST(CanSetUp, ACia402DriveIsSwitchedOffFirst) {
+  CanRig rig(wall_on(kCia402), changed([](Emulation&) {}));
+  VirtualConversation conversation(rig);
+  ASSERT_TRUE(can::cia402::set_up(conversation, {.node = 3, .place = "node 3 on can0"}));
+  const auto written = [&](std::uint16_t index) {  // 2B: two bytes
+    const auto is = [&](const can::Frame& frame) {
+      return frame.id == 0x603 && frame.data[0] == 0x2b &&
+             can::get<std::uint16_t>(frame.payload(), 1) == index;
+    };
+    return std::ranges::find_if(conversation.sent, is);
+  };
+  const auto started = std::ranges::find_if(conversation.sent, [](const can::Frame& frame) {
+    return frame.id == 0 && frame.data[0] == 0x01;
+  });
+  for (const std::uint16_t index : {std::uint16_t{0x6040}, std::uint16_t{0x6071}}) {
+    const auto at = written(index);
+    ASSERT_LT(at - conversation.sent.begin(), started - conversation.sent.begin()) << index;
+    EXPECT_EQ(can::get<std::uint16_t>(at->payload(), 4), 0) << index;
+  }
+}
 
 std::vector<can::FoundDrive> scan_of(const Bus& bus, const Emulation& emulation,
                                      const can::ScanOptions& options) {
