@@ -13,7 +13,7 @@
 
 #include "control/core/result.h"
 #include "drivers/can/conversation.h"
-#include "drivers/can/fault_text.h"
+#include "drivers/fault_text.h"
 #include "drivers/can/frame.h"
 #include "drivers/can/options.h"
 #include "drivers/can/socket.h"

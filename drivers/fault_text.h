@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace hapticd::can {
+namespace hapticd::drivers {
 
 class FaultText {
  public:
@@ -49,4 +49,4 @@ class FaultText {
   std::atomic<const Text*> shown_{nullptr};
 };
 
-}  // namespace hapticd::can
+}  // namespace hapticd::drivers
