@@ -11,6 +11,9 @@ namespace hapticd::config {
 
 class Compilation;
 
+/// A step of more than this many ticks at full speed is a jump.
+inline constexpr double kMaxStepTicks = 10;
+
 /// What is known of the dynamics along an axis, or along a coordinate of a contact.
 struct ModelValues {
   double inertia = 0;  ///< kg or kg m^2

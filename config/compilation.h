@@ -36,6 +36,7 @@ class Compilation {
   std::vector<check::DeviceAssumption> assumed;
   std::vector<std::optional<can::DeviceOptions>> can;  ///< per device
   std::vector<can::BusLoad> buses;
+  std::vector<std::optional<usb::DeviceOptions>> usb;  ///< per device
   double collect_s = 0;
   std::vector<ConfigError> errors;
 
@@ -84,6 +85,8 @@ void compile_simulated(Compilation& compilation, const DevicePlace& place);
 void check_cutoff(Compilation& compilation, const std::string& path, double cutoff_Hz);
 /// Devices of CAN drives, and whether their buses have room for them.
 void compile_buses(Compilation& compilation, const std::vector<DevicePlace>& places);
+/// Devices on USB; after the buses of CAN, which the loop may wait for.
+void compile_usb(Compilation& compilation, const std::vector<DevicePlace>& places);
 /// Of all devices; what follows knows what it names.
 void compile_coupling(Compilation& compilation);
 void compile_scene(Compilation& compilation, const std::vector<DevicePlace>& places);

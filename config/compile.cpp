@@ -82,6 +82,7 @@ void compile_all(Compilation& compilation) {
     compile_simulated(compilation, place);
   }
   compile_buses(compilation, places);
+  compile_usb(compilation, places);
   if (compilation.errors.empty()) compile_world(compilation, places);
   compile_assumptions(compilation, places);
 }
@@ -181,6 +182,8 @@ void resolve_paths(Config& config, const std::string& config_path) {
   if (config.coupling && config.coupling->file) make_relative_to(directory, *config.coupling->file);
   if (config.stability.proof) make_relative_to(directory, *config.stability.proof);
   for (Device& device : config.devices) {
+    if (device.falcon && device.falcon->firmware)
+      make_relative_to(directory, *device.falcon->firmware);
     for (Axis& axis : device.axes) {
       if (axis.model && axis.model->file) make_relative_to(directory, *axis.model->file);
     }
@@ -250,6 +253,7 @@ Checked<Compiled> compile(Document document) {
   compiled.shared_hand = std::move(compilation.shared_hand);
   compiled.can = std::move(compilation.can);
   compiled.buses = std::move(compilation.buses);
+  compiled.usb = std::move(compilation.usb);
   compiled.collect_s = compilation.collect_s;
   compiled.assumed = std::move(compilation.assumed);
   compiled.document = std::move(document);

@@ -13,6 +13,7 @@
 #include "control/design/check/stability.h"
 #include "drivers/can/budget.h"
 #include "drivers/can/options.h"
+#include "drivers/usb/options.h"
 #include "sim/options.h"
 
 namespace hapticd::check {
@@ -62,6 +63,7 @@ struct Compiled {
   std::optional<sim::SharedHandOptions> shared_hand;   ///< of the simulated devices
   std::vector<std::optional<can::DeviceOptions>> can;  ///< `can[i]` belongs to device i
   std::vector<can::BusLoad> buses;
+  std::vector<std::optional<usb::DeviceOptions>> usb;  ///< likewise
   double collect_s = 0;  ///< the loop waits so long for samples, from its tick's start
   std::vector<check::DeviceAssumption> assumed;
   /// Of a designed coupling; the check goes by it only as far as it holds.

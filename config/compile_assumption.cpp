@@ -117,7 +117,7 @@ void compile_assumptions(Compilation& compilation, const std::vector<DevicePlace
     compilation.assumed.push_back(
         {.name = place.device.name,
          .latency_s = place.device.latency_s,
-         .latency_varies = compilation.can[place.index].has_value(),
+         .latency_varies = compilation.can[place.index] || compilation.usb[place.index],
          .min_damping = min_damping(place),
          .obstacles = obstacles(compilation.spec, place),
          .active = active(felt),

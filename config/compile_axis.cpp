@@ -12,7 +12,6 @@
 namespace hapticd::config {
 namespace {
 
-constexpr double kMaxStepTicks = 10;  // a step of more than this many ticks at full speed is a jump
 constexpr double kStuckEffortShare =
     0.2;  // of the force limit: under less an axis may well stand still
 constexpr double kSearchEffortShare = 0.25;  // of the actuator: a search pushes against a stop

@@ -86,16 +86,9 @@ double answers_s(Compilation& compilation, const DevicePlace& place,
   return most_s;
 }
 
-/// Then the loop waits, for all devices.
-bool any_in_phase(const Compilation& compilation) {
-  return std::ranges::any_of(compilation.can, [](const auto& device) {
-    return device && device->timing == Timing::in_phase;
-  });
-}
-
 void check_times(Compilation& compilation, const DevicePlace& place, can::DeviceOptions& device) {
   const can::BusLoad bus = can::worst_of(device, compilation.buses);
-  device.collect_s = any_in_phase(compilation) ? compilation.collect_s : 0;
+  device.collect_s = any_in_phase(compilation.can) ? compilation.collect_s : 0;
   if (device.timing == Timing::reply_to_command &&
       can::worst_reply_s(device, bus) > device.period_s)
     compilation.refuse(
@@ -118,6 +111,11 @@ void check_times(Compilation& compilation, const DevicePlace& place, can::Device
 }
 
 }  // namespace
+
+bool any_in_phase(const std::vector<std::optional<can::DeviceOptions>>& devices) {
+  return std::ranges::any_of(
+      devices, [](const auto& device) { return device && device->timing == Timing::in_phase; });
+}
 
 void compile_buses(Compilation& compilation, const std::vector<DevicePlace>& places) {
   for (const DevicePlace& place : places) {

@@ -18,6 +18,9 @@ constexpr double kVelocityReserve = 2;  // near its own limit an ODrive weakens 
 std::optional<can::Protocol> protocol_of(Driver driver) {
   switch (driver) {
     case Driver::sim:
+    case Driver::falcon:
+    case Driver::hid_report:
+    case Driver::openffboard:
       return {};
     case Driver::odrive:
       return can::Protocol::odrive;
@@ -135,7 +138,7 @@ bool has_keys(Compilation& compilation, const DevicePlace& place, bool wanted) {
   const auto check = [&](const std::string& path, bool found) {
     if (found == wanted) return true;
     compilation.refuse(path, wanted ? "missing; expected here with driver: " + driver
-                                    : "driver: " + driver + " has no bus; remove this key");
+                                    : "driver: " + driver + " has no CAN bus; remove this key");
     return false;
   };
   bool good = check(place.path + ".can", place.device.can.has_value());

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/compilation.h"
 
@@ -14,5 +15,8 @@ std::optional<can::DeviceOptions> compile_drives(Compilation& compilation,
 /// The timing that a protocol has where the config names none.
 drivers::Timing own_timing(can::Protocol protocol);
 std::string word_of_timing(drivers::Timing timing);
+
+/// Then the loop waits, for all devices.
+bool any_in_phase(const std::vector<std::optional<can::DeviceOptions>>& devices);
 
 }  // namespace hapticd::config

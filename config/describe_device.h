@@ -2,6 +2,7 @@
 #pragma once
 #include "config/describe_axis.h"
 #include "config/describe_sim.h"
+#include "config/describe_usb.h"
 #include "config/key.h"
 #include "config/schema_device.h"
 #include "control/core/capacity.h"
@@ -292,6 +293,12 @@ void describe(V& v, Device& s) {
       {.about = "truth of a simulated device, or of one that `hapticctl emulate` stands in for; "
                 "null: it equals the model"});
   v.optional("can", s.can, {.about = "the bus, with a driver for CAN; null: none"});
+  v.optional("usb", s.usb,
+             {.about = "which device on USB, and its times; hid_report needs it, null: a falcon or "
+                       "openffboard with the defaults"});
+  v.optional("falcon", s.falcon, {.about = "of a falcon; null: the defaults"});
+  v.optional("report", s.report, {.about = "of a hid_report, which needs it: what its bytes are"});
+  v.optional("openffboard", s.openffboard, {.about = "of an openffboard, which needs it"});
   v.required("kinematics", s.kinematics,
              {.about = "how axes move the contact: a map with one key, the kind"});
   v.optional("pose", s.pose, {.about = "where the device stands in the world"});

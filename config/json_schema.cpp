@@ -8,6 +8,7 @@
 #include "config/describe.h"
 #include "config/field_traits.h"
 #include "config/limits_text.h"
+#include "config/text_form.h"
 
 namespace hapticd::config {
 namespace {
@@ -138,8 +139,7 @@ Json schema_of(const Key& key) {
     return {{"type", "boolean"}};
   } else if constexpr (kIsText<T>) {
     Json schema = {{"type", "string"}};
-    if (key.form == TextForm::name) schema["pattern"] = kNamePattern;
-    if (key.form == TextForm::coordinate) schema["pattern"] = kCoordinatePattern;
+    if (const char* pattern = pattern_of(key.form)) schema["pattern"] = pattern;
     return schema;
   } else if constexpr (std::is_enum_v<T>) {
     return {{"type", "string"}, {"enum", Words<T>::list}};

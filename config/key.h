@@ -15,10 +15,10 @@ enum class TextForm {
   any,
   name,        ///< left
   coordinate,  ///< left or left.x
+  hex_pair,    ///< 0403:cb48
+  usb_port,    ///< 1-2.3
+  sha256,      ///< 64 hexadecimal digits
 };
-// Their patterns.
-inline constexpr const char* kNamePattern = "^[a-z][a-z0-9_]*$";
-inline constexpr const char* kCoordinatePattern = "^[a-z][a-z0-9_]*([.][xyz])?$";
 
 /// All about one key but its type, which the field has, and its default, which the struct has.
 struct Key {
@@ -84,7 +84,16 @@ struct Words<FreeSide> {
 };
 template <>
 struct Words<Driver> {
-  static constexpr std::array<std::string_view, 4> list{"sim", "odrive", "moteus", "cia402"};
+  static constexpr std::array<std::string_view, 7> list{
+      "sim", "odrive", "moteus", "cia402", "falcon", "hid_report", "openffboard"};
+};
+template <>
+struct Words<UsbTransport> {
+  static constexpr std::array<std::string_view, 2> list{"hidapi", "libusb"};
+};
+template <>
+struct Words<ByteOrder> {
+  static constexpr std::array<std::string_view, 2> list{"little", "big"};
 };
 template <>
 struct Words<CanTiming> {

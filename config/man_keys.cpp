@@ -47,7 +47,12 @@ std::string type_text(const Key& key) {
   } else if constexpr (kIsBool<T>) {
     return "true | false";
   } else if constexpr (kIsText<T>) {
-    constexpr std::array forms{"text", "name", "name, or name with direction"};
+    constexpr std::array forms{"text",
+                               "name",
+                               "name, or name with direction",
+                               "text such as 1209:ffb0",
+                               "text such as 1-2.3",
+                               "64 hexadecimal digits"};
     return forms[static_cast<std::size_t>(key.form)];
   } else if constexpr (std::is_enum_v<T>) {
     return words_of<T>();

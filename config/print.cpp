@@ -8,6 +8,7 @@
 #include "config/number.h"
 #include "config/print_axis.h"
 #include "config/print_can.h"
+#include "config/print_usb.h"
 #include "config/print_world.h"
 
 namespace hapticd::config {
@@ -96,7 +97,7 @@ std::string device_text(const Compiled& compiled, std::size_t index) {
         cartesian ? " along " + std::string(word_of(cartesian->directions[i])) : "";
     text += axis_text(plan, plan.devices[index].first_axis + i, device.axes[i], along);
   }
-  return text + drives_text(compiled, index) +
+  return text + drives_text(compiled, index) + usb_text(compiled, index) +
          guard_text(effective_guard(config.guard, device), rotary) + inputs_text(device) +
          assumed_text(compiled.assumed[index], rotary);
 }

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "config/compile_usb.h"
 #include "config/describe.h"
 #include "config/effective_guard.h"
 #include "config/field_traits.h"
@@ -70,6 +71,36 @@ Json assumed_json(const check::DeviceAssumption& assumed, bool rotary) {
           {"nonconvex", assumed.nonconvex}};
 }
 
+Json selection_json(const usb::Selection& selection) {
+  const auto or_any = [](const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+  };
+  Json usage = nullptr;
+  if (selection.usage) usage = hex_pair_text(*selection.usage >> 16, *selection.usage & 0xffff);
+  return {{"id", hex_pair_text(selection.vendor, selection.product)},
+          {"serial", or_any(selection.serial)},
+          {"path", or_any(selection.path)},
+          {"interface", or_null(selection.interface)},
+          {"usage", usage},
+          {"transport", word_of(static_cast<UsbTransport>(selection.transport))},
+          {"reads", selection.reads}};
+}
+
+/// null: not on USB.
+Json usb_json(const Compiled& compiled, std::size_t index) {
+  const auto& usb = compiled.usb[index];
+  if (!usb) return nullptr;
+  Json json = selection_json(usb->selection);
+  json.update({{"arrival_age_s", usb->arrival_age_s},
+               {"max_age_s", usb->worst_sample_age_s},
+               {"send_s", usb->send_s},
+               {"drive_delay_s", usb->drive_delay_s},
+               {"watchdog_s", usb->watchdog_s},
+               {"silence_s", usb->silence_s},
+               {"least_latency_s", least_latency_s(*usb, waits_s(compiled))}});
+  return json;
+}
+
 Json device_json(const Compiled& compiled, std::size_t index) {
   const Config& config = compiled.document.config;
   const Device& device = config.devices[index];
@@ -87,6 +118,7 @@ Json device_json(const Compiled& compiled, std::size_t index) {
           {"driver", word_of(device.driver)},
           {"kinematics", std::visit(kind, device.kinematics)},
           {"axes", axes},
+          {"usb", usb_json(compiled, index)},
           {"guard", guard_json(effective_guard(config.guard, device))},
           {"assumed", assumed_json(compiled.assumed[index], rotary)}};
 }

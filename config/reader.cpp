@@ -1,12 +1,12 @@
 #include "config/reader.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "config/limits_text.h"
 #include "config/nearest.h"
 #include "config/number.h"
 #include "config/text_check.h"
+#include "config/text_form.h"
 
 namespace hapticd::config {
 namespace {
@@ -36,30 +36,6 @@ std::string joined(const std::vector<std::string>& words) {
 
 bool is_plain(const Node& node) {
   return node.kind == NodeKind::scalar && !node.quoted;
-}
-
-bool is_name(std::string_view text) {
-  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
-  const auto is_rest = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), is_rest);
-}
-
-/// left, or left.x
-bool is_coordinate(std::string_view text) {
-  const std::size_t dot = text.find('.');
-  if (dot == std::string_view::npos) return is_name(text);
-  const std::string_view direction = text.substr(dot + 1);
-  return is_name(text.substr(0, dot)) && (direction == "x" || direction == "y" || direction == "z");
-}
-
-bool has_form(std::string_view text, TextForm form) {
-  return form == TextForm::any || (form == TextForm::name ? is_name(text) : is_coordinate(text));
-}
-
-const char* expected_text(TextForm form) {
-  if (form == TextForm::name) return "a name: a to z first, then a to z, 0 to 9 and _";
-  return form == TextForm::coordinate ? "a name, such as left, or one with a direction: left.x"
-                                      : "a text";
 }
 
 /// "a number from 0 to 1 N"

@@ -8,6 +8,7 @@
 
 #include "config/schema_axis.h"
 #include "config/schema_sim.h"
+#include "config/schema_usb.h"
 
 namespace hapticd::config {
 
@@ -112,7 +113,7 @@ struct Guard {
   bool operator==(const Guard&) const = default;
 };
 
-enum class Driver { sim, odrive, moteus, cia402 };
+enum class Driver { sim, odrive, moteus, cia402, falcon, hid_report, openffboard };
 enum class CanTiming { in_phase, free_running, reply_to_command };
 /// The bus of a device of CAN drives.
 struct CanBus {
@@ -133,8 +134,12 @@ struct CanBus {
 struct Device {
   std::string name;
   Driver driver = Driver::sim;
-  std::optional<Sim> sim;     ///< of a simulated or emulated device
-  std::optional<CanBus> can;  ///< with a driver for CAN
+  std::optional<Sim> sim;        ///< of a simulated or emulated device
+  std::optional<CanBus> can;     ///< with a driver for CAN
+  std::optional<UsbDevice> usb;  ///< with one for USB; default: as its keys say, without `id` none
+  std::optional<Falcon> falcon;
+  std::optional<Report> report;  ///< of a hid_report
+  std::optional<OpenFfboard> openffboard;
   Kinematics kinematics;
   Pose pose;
   double workspace_scale = 1;

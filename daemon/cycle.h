@@ -46,6 +46,8 @@ class Cycle {
   /// Every device had its power stage on.
   bool armed() const noexcept { return armed_; }
   std::span<const AxisSample> samples() const noexcept { return samples_; }
+  /// Likewise, by device.
+  std::span<const Aux> aux() const noexcept { return aux_; }
 
  private:
   struct Slot {

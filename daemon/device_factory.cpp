@@ -1,6 +1,7 @@
 #include "daemon/device_factory.h"
 
 #include "drivers/can/can_device.h"
+#include "drivers/usb/usb_device.h"
 #include "sim/shared_hand.h"
 #include "sim/sim_device.h"
 
@@ -18,6 +19,12 @@ std::vector<std::unique_ptr<drivers::Device>> make_devices(const config::Compile
       case config::Driver::moteus:
       case config::Driver::cia402:
         devices.push_back(std::make_unique<can::CanDevice>(*compiled.can[i]));
+        break;
+      case config::Driver::falcon:
+      case config::Driver::hid_report:
+      case config::Driver::openffboard:
+        devices.push_back(std::make_unique<usb::UsbDevice>(
+            *compiled.usb[i], usb::this_host(), usb::thread_runner(compiled.usb[i]->priority)));
         break;
       case config::Driver::sim:
         devices.push_back(hand && hand->holds(i)

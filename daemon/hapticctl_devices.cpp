@@ -11,6 +11,8 @@
 #include "daemon/ctl_verbs.h"
 #include "daemon/lock_file.h"
 #include "drivers/can/scan.h"
+#include "drivers/usb/choose.h"
+#include "drivers/usb/scan.h"
 
 namespace hapticd::daemon {
 namespace {
@@ -21,6 +23,18 @@ struct FoundBus {
   std::string problem{}, note{};
   bool asked = false;
   std::vector<can::FoundDrive> drives{};
+};
+
+struct Found {
+  bool only_can = false;  ///< one interface was asked for
+  std::vector<FoundBus> buses{};
+  std::vector<usb::FoundDevice> devices{};
+
+  bool any_usable() const {
+    return std::ranges::any_of(buses, [](const FoundBus& bus) { return bus.problem.empty(); }) ||
+           std::ranges::any_of(
+               devices, [](const usb::FoundDevice& device) { return device.refused.empty(); });
+  }
 };
 
 int number_in(const std::filesystem::path& file) {
@@ -71,56 +85,104 @@ FoundBus look(const std::string& interface, const DevicesOptions& options) {
   return found;
 }
 
-Json to_json(const std::vector<FoundBus>& all, bool any) {
-  Json list = Json::array();
-  for (const FoundBus& found : all) {
-    Json drives = Json::array();
-    for (const can::FoundDrive& drive : found.drives)
-      drives.push_back({{"driver", can::word_of(drive.protocol)},
-                        {"node", drive.node},
-                        {"what", drive.what},
-                        {"refused", drive.refused.empty() ? Json(nullptr) : Json(drive.refused)}});
-    list.push_back({{"interface", found.interface},
-                    {"problem", found.problem.empty() ? Json(nullptr) : Json(found.problem)},
-                    {"note", found.note.empty() ? Json(nullptr) : Json(found.note)},
-                    {"drives", drives}});
+std::vector<usb::FoundDevice> look_at_usb() {
+  std::vector<usb::FoundDevice> found = usb::scan({});
+  for (usb::FoundDevice& device : found) {
+    // As UsbDevice::lock_names() begins; which one of several it drives, the lock may not say.
+    std::string lock = "usb-" + usb::id_of(device.about.vendor, device.about.product);
+    std::ranges::replace(lock, ':', '-');
+    if (is_locked(lock, device_lock_directories()))
+      device.refused = "hapticd drives it, or another of its kind";
   }
-  return {{"ok", any}, {"can", list}};
+  return found;
 }
 
-std::string to_lines(const std::vector<FoundBus>& all) {
-  std::string text;
-  for (const FoundBus& found : all) {
-    text += found.interface + (found.problem.empty() ? "" : ": " + found.problem) +
-            (found.note.empty() ? "" : ": " + found.note) + "\n";
-    if (found.drives.empty() && found.problem.empty())
-      text += found.asked ? "  nobody was heard; a drive that says nothing by itself is found with "
-                            "--ask odrive, moteus or cia402\n"
-                          : "  nobody was heard\n";
-    for (const can::FoundDrive& drive : found.drives)
-      text += fmt::format("  node {:<4}{:<8}{}{}\n", drive.node, can::word_of(drive.protocol),
-                          drive.what, drive.refused.empty() ? "" : "; refused: " + drive.refused);
-  }
+Json or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json to_json(const FoundBus& bus) {
+  Json drives = Json::array();
+  for (const can::FoundDrive& drive : bus.drives)
+    drives.push_back({{"driver", can::word_of(drive.protocol)},
+                      {"node", drive.node},
+                      {"what", drive.what},
+                      {"refused", or_null(drive.refused)}});
+  return {{"interface", bus.interface},
+          {"problem", or_null(bus.problem)},
+          {"note", or_null(bus.note)},
+          {"drives", drives}};
+}
+
+Json to_json(const usb::FoundDevice& device) {
+  return {{"driver", usb::word_of(device.kind)},
+          {"what", device.about.name},
+          {"id", usb::id_of(device.about.vendor, device.about.product)},
+          {"serial", or_null(device.about.serial)},
+          {"path", device.about.path},
+          {"interface", device.interface ? Json(*device.interface) : Json(nullptr)},
+          {"usages", or_null(device.usages)},
+          {"node", device.node},
+          {"refused", or_null(device.refused)}};
+}
+
+std::string refusal(const std::string& refused) {
+  return refused.empty() ? "" : "; refused: " + refused;
+}
+
+std::string to_lines(const FoundBus& bus) {
+  std::string text = bus.interface + (bus.problem.empty() ? "" : ": " + bus.problem) +
+                     (bus.note.empty() ? "" : ": " + bus.note) + "\n";
+  if (bus.drives.empty() && bus.problem.empty())
+    text += bus.asked ? "  nobody was heard; a drive that says nothing by itself is found with "
+                        "--ask odrive, moteus or cia402\n"
+                      : "  nobody was heard\n";
+  for (const can::FoundDrive& drive : bus.drives)
+    text += fmt::format("  node {:<4}{:<8}{}{}\n", drive.node, can::word_of(drive.protocol),
+                        drive.what, refusal(drive.refused));
   return text;
+}
+
+std::string to_line(const usb::FoundDevice& device) {
+  std::string part;
+  if (device.interface) part += fmt::format(", interface {}", *device.interface);
+  if (!device.usages.empty()) part += ", usage " + device.usages;
+  return fmt::format("  {:<12}{}{}, {}{}\n", usb::word_of(device.kind), usb::words(device.about),
+                     part, device.node, refusal(device.refused));
+}
+
+std::string to_lines(const Found& found) {
+  std::string text;
+  for (const FoundBus& bus : found.buses) text += to_lines(bus);
+  if (!found.only_can && found.buses.empty())
+    text +=
+        "CAN: no interface on this machine; a virtual one: modprobe vcan, then ip link add can0 "
+        "type vcan; ip link set can0 mtu 72 up\n";
+  if (found.only_can) return text;
+  text += found.devices.empty() ? "USB: no device that a driver knows, and no HID device with a "
+                                  "vendor's usages\n"
+                                : "USB\n";
+  for (const usb::FoundDevice& device : found.devices) text += to_line(device);
+  return text;
+}
+
+Json to_json(const Found& found) {
+  Json answer{{"ok", found.any_usable()}, {"can", Json::array()}, {"usb", Json::array()}};
+  for (const FoundBus& bus : found.buses) answer["can"].push_back(to_json(bus));
+  for (const usb::FoundDevice& device : found.devices) answer["usb"].push_back(to_json(device));
+  return answer;
 }
 
 }  // namespace
 
 ExitCode run_devices(const DevicesOptions& options, bool json) {
-  std::vector<std::string> interfaces = can_interfaces();
-  if (!options.interface.empty()) interfaces = {options.interface};
-  if (interfaces.empty()) {
-    return print_error(Error{"no CAN interface on this machine; a virtual one: modprobe vcan, then "
-                             "ip link add can0 type vcan; ip link set can0 mtu 72 up",
-                             ExitCode::unavailable},
-                       json);
-  }
-  std::vector<FoundBus> all;
-  for (const std::string& interface : interfaces) all.push_back(look(interface, options));
-  const bool any =
-      std::ranges::any_of(all, [](const FoundBus& one) { return one.problem.empty(); });
-  std::fputs(json ? (to_text(to_json(all, any)) + "\n").c_str() : to_lines(all).c_str(), stdout);
-  return any ? ExitCode::ok : ExitCode::unavailable;
+  Found found{.only_can = !options.interface.empty()};
+  const std::vector<std::string> interfaces =
+      found.only_can ? std::vector{options.interface} : can_interfaces();
+  for (const std::string& interface : interfaces) found.buses.push_back(look(interface, options));
+  if (!found.only_can) found.devices = look_at_usb();
+  std::fputs(json ? (to_text(to_json(found)) + "\n").c_str() : to_lines(found).c_str(), stdout);
+  return found.any_usable() ? ExitCode::ok : ExitCode::unavailable;
 }
 
 }  // namespace hapticd::daemon

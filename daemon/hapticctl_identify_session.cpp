@@ -28,7 +28,7 @@ class AxisReader {
 
   /// NaN while there is no sample.
   double read(const AxisSample& sample) noexcept {
-    fresh_ = sample.freshness == Freshness::fresh && std::isfinite(sample.raw);
+    fresh_ = sample.freshness >= Freshness::fresh && std::isfinite(sample.raw);
     if (!fresh_) return position_;
     if (std::isnan(position_)) raw_ = sample.raw;
     double counts = sample.raw - raw_;

@@ -120,7 +120,7 @@ void add_bus_verbs(CommandLine& line) {
   CLI::App* devices =
       add_verb(line, "devices", "which devices are there, and why one cannot be used",
                [&line] { return daemon::run_devices(line.devices, line.json); });
-  devices->add_option("--interface", line.devices.interface, "this one alone (default: all)")
+  devices->add_option("--interface", line.devices.interface, "this CAN interface alone (default: all, and USB)")
       ->type_name("NAME");
   devices
       ->add_option("--ask", line.devices.ask,
@@ -134,36 +134,45 @@ void add_bus_verbs(CommandLine& line) {
       ->check(daemon::within(0.0, 60.0))
       ->type_name("S");
 
-  CLI::App* emulate = add_verb(line, "emulate", "stand in for the CAN drives of a config",
-                               [&line] { return daemon::run_emulate(line.emulate, line.json); });
+  CLI::App* emulate =
+      add_verb(line, "emulate", "stand in for the drives and USB devices of a config",
+               [&line] { return daemon::run_emulate(line.emulate, line.json); });
   daemon::EmulateOptions& options = line.emulate;
   emulate->add_option("CONFIG", options.config, "the config")->required();
-  emulate->add_option("--bus", options.bus, "devices on this interface alone (default: all)")
+  emulate->add_option("--bus", options.bus, "CAN: devices on this interface alone (default: all)")
       ->type_name("NAME");
   emulate->add_flag("--real", options.real,
-                    "on a real controller, too: only where no real drive is on the bus");
+                    "CAN: on a real controller, too: only where no real drive is on the bus");
+  emulate->add_flag("--uhid", options.uhid,
+                    "USB: show HID devices by /dev/uhid, not by a virtual host controller");
   emulate->add_option("--duration", options.duration_s, "end after so many seconds")
       ->check(daemon::within(0.0, 1e9))
       ->type_name("S");
-  emulate->add_option("--loss", options.loss, "share of the frames that are lost, each way")
+  emulate
+      ->add_option("--loss", options.loss,
+                   "share of the frames or transfers that are lost, each way")
       ->check(daemon::within(0.0, 1.0))
       ->type_name("P");
-  emulate->add_option("--duplicate", options.duplicate, "share of the frames that come twice")
+  emulate->add_option("--duplicate", options.duplicate, "share that comes twice")
       ->check(daemon::within(0.0, 1.0))
       ->type_name("P");
-  emulate->add_option("--delay", options.delay_s, "of every frame, each way")
+  emulate->add_option("--runt", options.runt, "USB: share of the transfers here that are cut")
+      ->check(daemon::within(0.0, 1.0))
+      ->type_name("P");
+  emulate->add_option("--delay", options.delay_s, "CAN: of every frame, each way")
       ->check(daemon::within(0.0, 1.0))
       ->type_name("S");
   emulate->add_option("--jitter", options.jitter_s, "and up to so much more")
       ->check(daemon::within(0.0, 1.0))
       ->type_name("S");
-  emulate->add_option("--drift", options.drift_ppm, "that the drives' clocks run fast by")
+  emulate->add_option("--drift", options.drift_ppm, "CAN: that the drives' clocks run fast by")
       ->check(daemon::within(-1e4, 1e4))
       ->type_name("PPM");
   emulate
       ->add_option("--fault", options.faults,
                    "KIND:AXIS@SECONDS, may be repeated: reset, fail, mute or speak, such as "
-                   "reset:left.x@2.5")
+                   "reset:left.x@2.5; of USB KIND:DEVICE@SECONDS: unplug, plug, reset, hang, mute, "
+                   "speak or stall; - takes them from standard input")
       ->type_name("FAULT");
 }
 

@@ -5,15 +5,15 @@
 # shellcheck disable=SC2034  # used by the scripts that source this file
 {
   packages_build=(g++ cmake ninja-build pkg-config libeigen3-dev libexpected-dev libyaml-cpp-dev libspdlog-dev
-    libcli11-dev nlohmann-json3-dev libsystemd-dev libdsdp-dev scdoc)
+    libcli11-dev nlohmann-json3-dev libusb-1.0-0-dev libhidapi-dev libsystemd-dev libmd-dev libdsdp-dev scdoc)
   # Not needed to run hapticd: gnuplot-nox draws the pictures of `hapticctl plot`, which says so where it is missing.
   packages_optional=(gnuplot-nox)
-  packages_tests=(libgtest-dev libgmock-dev librapidcheck-dev systemd man-db shellcheck clang-format-14
-    "${packages_optional[@]}")
+  packages_tests=(libgtest-dev libgmock-dev librapidcheck-dev umockdev libumockdev-dev systemd man-db shellcheck
+    clang-format-14 "${packages_optional[@]}")
   packages_clang=(clang-14 libclang-rt-14-dev)
   packages_rtsan=(clang-22 libclang-rt-22-dev)
   packages_bench=(libbenchmark-dev)
-  packages_vm=(qemu-system-x86 busybox-static cpio kmod iproute2 can-utils rt-tests python3)
+  packages_vm=(qemu-system-x86 busybox-static cpio kmod iproute2 can-utils rt-tests python3 strace udev)
 }
 
 as_root() {

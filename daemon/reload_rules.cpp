@@ -97,6 +97,10 @@ void compare_device(const config::Device& a, const config::Device& b, const std:
   found.compare(a.name == b.name, key + ".name");
   found.compare(a.driver == b.driver, key + ".driver");
   found.compare(a.can == b.can, key + ".can");
+  found.compare(a.usb == b.usb, key + ".usb");
+  found.compare(a.falcon == b.falcon, key + ".falcon");
+  found.compare(a.report == b.report, key + ".report");
+  found.compare(a.openffboard == b.openffboard, key + ".openffboard");
   found.compare(a.kinematics == b.kinematics, key + ".kinematics");
   found.compare(a.pose == b.pose, key + ".pose");
   found.compare(a.gravity == b.gravity, key + ".gravity");

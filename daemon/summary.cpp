@@ -90,6 +90,18 @@ void add_limits(const Summary& s, Table& table) {
     table.row("limit", fmt::format("{} in {} ticks", limit.name, limit.ticks));
 }
 
+std::string traffic_words(const TrafficSummary& bus) {
+  if (!bus.comes_and_goes)
+    return fmt::format(
+        "{} samples late, {} frames not sent, {} lost on the way here, {} commands of others", bus.late,
+        bus.not_sent, bus.lost, bus.foreign);
+  return fmt::format(
+      "plugged in and set up {} times, round trip {:.2f} ms then, commands took at most {:.2f} ms on "
+      "their way out; {} samples malformed, {} skipped, {} lost, {} commands replaced by newer ones",
+      bus.connections, 1e3 * bus.round_trip_s, 1e3 * bus.worst_send_s, bus.malformed, bus.late,
+      bus.lost, bus.not_sent);
+}
+
 void add_devices(const Summary& s, Table& table) {
   for (const DeviceSummary& device : s.devices) {
     table.row(
@@ -98,11 +110,7 @@ void add_devices(const Summary& s, Table& table) {
                     device.not_homed.empty()
                         ? std::string("every axis homed")
                         : fmt::format("not homed: {}", fmt::join(device.not_homed, ", "))));
-    if (const auto& bus = device.traffic)
-      table.row("bus of " + device.name,
-                fmt::format("{} samples late, {} frames not sent, {} lost on the way here, {} "
-                            "commands of others",
-                            bus->late, bus->not_sent, bus->lost, bus->foreign));
+    if (const auto& bus = device.traffic) table.row("bus of " + device.name, traffic_words(*bus));
   }
 }
 

@@ -41,7 +41,11 @@ struct LimitCount {
 
 /// As drivers::Traffic.
 struct TrafficSummary {
-  std::uint64_t late = 0, not_sent = 0, lost = 0, foreign = 0;
+  std::uint64_t late = 0, not_sent = 0, lost = 0, foreign = 0, malformed = 0;
+  // of a device that comes and goes
+  std::uint64_t connections = 0;
+  double round_trip_s = 0, worst_send_s = 0;
+  bool comes_and_goes = false;
 };
 
 struct DeviceSummary {

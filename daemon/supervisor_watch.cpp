@@ -80,7 +80,10 @@ void Supervisor::note_fault() {
 
 /// Forces that were asked for and wait for somebody: told whenever what they wait for changes.
 void Supervisor::watch_waiting() {
-  waiting_ = waiting_for(engine_->program().spec(), engine_->live());
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < engine_->devices().size(); ++i)
+    words.emplace_back(engine_->device(i).status_text());
+  waiting_ = waiting_for(engine_->program().spec(), engine_->live(), words);
   const bool asked = engine_->shared().enable.load() && state_ != State::off;
   if (!asked) told_waiting_.clear();
   if (!asked || waiting_ == told_waiting_) return;
@@ -177,7 +180,12 @@ Summary Supervisor::summary() const {
       s.devices[i].traffic = {.late = bus->late.load(),
                               .not_sent = bus->not_sent.load(),
                               .lost = bus->lost.load(),
-                              .foreign = bus->foreign.load()};
+                              .foreign = bus->foreign.load(),
+                              .malformed = bus->malformed.load(),
+                              .connections = bus->connections.load(),
+                              .round_trip_s = 1e-9 * static_cast<double>(bus->round_trip_ns.load()),
+                              .worst_send_s = 1e-9 * static_cast<double>(bus->worst_send_ns.load()),
+                              .comes_and_goes = bus->comes_and_goes};
   }
   return s;
 }

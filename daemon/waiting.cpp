@@ -43,17 +43,30 @@ std::string unhomed(const build::ProgramSpec& spec, std::size_t axis) {
       homing == spec.homings.end() ? "its encoder has given no value yet" : how_to_home(*homing));
 }
 
+std::size_t device_of(const build::ProgramSpec& spec, std::size_t axis) {
+  std::size_t device = 0;
+  while (device < spec.devices.size() &&
+         axis >= std::size_t{spec.devices[device].first_axis} + spec.devices[device].axes)
+    ++device;
+  return device;
+}
+
 }  // namespace
 
-std::vector<std::string> waiting_for(const build::ProgramSpec& spec, const LiveView& now) {
+std::vector<std::string> waiting_for(const build::ProgramSpec& spec, const LiveView& now,
+                                     const std::vector<std::string>& device_words) {
   std::vector<std::string> lines;
   if (!now.known) return lines;
+  for (const std::string& words : device_words)
+    if (!words.empty()) lines.push_back(words);
   for (const control::EnableInput& input : spec.enable_inputs) {
     if (input.device < now.digital.size())
       add_input(input, spec.device_names[input.device], now.digital[input.device], lines);
   }
   for (std::size_t i = 0; i < std::min(now.homed.size(), spec.axis_names.size()); ++i) {
-    if (!now.homed[i]) lines.push_back(unhomed(spec, i));
+    const std::size_t device = device_of(spec, i);
+    const bool said = device < device_words.size() && !device_words[device].empty();
+    if (!now.homed[i] && !said) lines.push_back(unhomed(spec, i));
   }
   return lines;
 }

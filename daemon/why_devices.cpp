@@ -77,7 +77,7 @@ void add_extremes(const RecordingView& view, Stretch stretch, Part& axis) {
     if (speed != nullptr && i < stretch.end)
       fastest = std::fmax(fastest, std::abs(view.value(i, *speed)));
     if (age != nullptr) oldest_ns = std::fmax(oldest_ns, view.value(i, *age));
-    const bool fresh = view.whole(i, freshness) == static_cast<std::int64_t>(Freshness::fresh);
+    const bool fresh = view.whole(i, freshness) >= static_cast<std::int64_t>(Freshness::fresh);
     if (freshness != nullptr && !fresh) ++not_fresh;
     if (limits != nullptr && view.whole(i, limits) != 0) ++limited;
   }

@@ -44,12 +44,18 @@ struct TickTime {
   std::int64_t deadline_ns = 0;  ///< collect is given up at this time
 };
 
-/// What a bus did to a device since it was connected: counted by the servo thread, read by anyone.
+/// What a bus did to a device since it was connected: counted by one thread, read by anyone.
 struct Traffic {
   std::atomic<std::uint64_t> late{0};      ///< samples that came after their tick
   std::atomic<std::uint64_t> not_sent{0};  ///< frames that the kernel did not take
   std::atomic<std::uint64_t> lost{0};     ///< at least so many were dropped by it on their way here
   std::atomic<std::uint64_t> foreign{0};  ///< commands of others
+  std::atomic<std::uint64_t> malformed{0};    ///< what no sound device sends
+  // Of a device that may come and go:
+  bool comes_and_goes = false;
+  std::atomic<std::uint64_t> connections{0};   ///< how often it was set up
+  std::atomic<std::int64_t> round_trip_ns{0};  ///< as measured when it was set up; 0: not measured
+  std::atomic<std::int64_t> worst_send_ns{0};  ///< that a command took on its way out
 };
 
 enum class Collected : std::uint8_t { complete, waiting };
@@ -91,6 +97,8 @@ class Device {
   virtual void stop() noexcept = 0;
   /// Why Aux::faulted is set, as a static text for people.
   virtual std::string_view fault_text() const noexcept { return {}; }
+  /// What it is about while it gives no samples, as a static text for people: "not plugged in".
+  virtual std::string_view status_text() const noexcept { return {}; }
   /// nullptr: the device has no bus.
   virtual const Traffic* traffic() const noexcept { return nullptr; }
 };

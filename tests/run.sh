@@ -18,7 +18,7 @@ usage: tests/run.sh [--clang] [--asan] [--asan-all] [--tsan] [--rtsan] [--long] 
   --rtsan   RealtimeSanitizer (clang 22), the tests of the loop
   --long    the tests that take long
   --bench   the benchmarks, printed, not judged
-  --vm      a PREEMPT_RT kernel in QEMU: SocketCAN, a real CAN driver, a certified wall, the loop's punctuality
+  --vm      a PREEMPT_RT kernel in QEMU: SocketCAN, a real CAN driver, USB, certified walls, the loop's punctuality
   --fuzz    coverage-guided fuzzing (clang 14): 10^5 inputs a CAN codec, 10^4 a drive and the socket; a hundred times
             that with --long
 END
@@ -109,7 +109,7 @@ suite_bench() {
 }
 suite_vm() {
   install_packages "${packages_vm[@]}" || true # run.sh names what is still missing
-  build_in build '' 'hapticd hapticctl can_kernel_test' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_WERROR="$werror"
+  build_in build '' 'hapticd hapticctl can_kernel_test falcon_line' -DCMAKE_BUILD_TYPE=Release -DHAPTICD_WERROR="$werror"
   local code=0
   tests/vm/run.sh build/tests/can_kernel_test | tee -a build/ctest.log || code=$?
   case $code in
@@ -130,11 +130,12 @@ fuzz_one() {
     return 1
   fi
   sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\) second.*/\1 \2/p" "$log" \
-    | awk -v target="$target" '{ printf "%-13s %9d inputs %6d s %8d a second\n", target, $1, $2, $1 / ($2 > 0 ? $2 : 1) }'
+    | awk -v target="$target" '{ printf "%-23s %9d inputs %6d s %8d a second\n", target, $1, $2, $1 / ($2 > 0 ? $2 : 1) }'
 }
 suite_fuzz() {
   local target runs started pids=() failed=0 part=100
-  local targets=(odrive_codec moteus_codec cia402_codec odrive_drive moteus_drive cia402_drive socket)
+  local targets=(odrive_codec moteus_codec cia402_codec odrive_drive moteus_drive cia402_drive socket
+    falcon_codec report_map_codec report_descriptor_codec openffboard_codec openffboard_drive usbip)
   case " ${suites[*]} " in *" long "*) part=1 ;; esac
   install_packages "${packages_build[@]}" "${packages_clang[@]}"
   fix_addresses

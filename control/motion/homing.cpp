@@ -144,6 +144,8 @@ class Homing {
 void home(const Plan& plan, State& state, const TickInput& input, Findings& findings) noexcept {
   bool searching = state.mode != Mode::homing;  // one axis at a time, and none outside that mode
   for (std::size_t i = 0; i < plan.homings.size(); ++i) {
+    // What was found before the device went away need not hold any more.
+    if (input.axes[plan.homings[i].axis].freshness == Freshness::first) state.homings[i] = {};
     Homing axis(plan, state, input, i);
     if (!state.axes[plan.homings[i].axis].seeded) {
       findings.homed = false;

@@ -34,7 +34,8 @@ class Unusual {
 
   void sense(const AxisSample& sample, std::int64_t missed_ticks,
              std::uint32_t max_stale_ticks) noexcept {
-    if (sample.freshness != Freshness::fresh) {
+    if (sample.freshness == Freshness::first) axis_.seeded = false;
+    if (sample.freshness < Freshness::fresh) {
       hold(max_stale_ticks);
     } else if (!std::isfinite(sample.raw)) {
       hold(~0u);
@@ -57,7 +58,8 @@ class Unusual {
 
   void seed(double raw) noexcept {
     axis_.seeded = axis_.homed = true;  // home() knows better where there is something to find
-    axis_.unwrapped = 0;
+    axis_.unwrapped = axis_.zero = 0;
+    ledger_.known = false;
     move(raw, wrap(raw, plan_.modulus_raw));
     axis_.motion = Motion::reseeded;
     qd_ = 0;

@@ -20,6 +20,8 @@
 
 namespace hapticd::can {
 
+using drivers::FaultText;
+
 /// What one tick sends on one bus.
 class Outbox {
  public:

@@ -91,8 +91,8 @@ std::optional<Magnitude> encode_magnitude(std::uint8_t effect, double magnitude)
   return encoded;
 }
 
-std::array<std::uint8_t, 4> start_effect(std::uint8_t effect) noexcept {
-  return {kOperationReport, effect, kStart, 0xff};
+std::array<std::uint8_t, 4> start_effect(std::uint8_t effect, std::uint8_t times) noexcept {
+  return {kOperationReport, effect, kStart, times};
 }
 std::array<std::uint8_t, 4> stop_effect(std::uint8_t effect) noexcept {
   return {kOperationReport, effect, kStop, 0x00};

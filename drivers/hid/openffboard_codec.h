@@ -34,7 +34,7 @@ inline constexpr std::uint16_t kForever = 0xffff;
 inline constexpr std::size_t kMostSetEffectBytes = 64;
 struct ConstantForce {
   std::uint8_t effect = 1;               ///< from 1 on
-  std::uint16_t duration_ms = kForever;  ///< the effect ends by itself
+  std::uint16_t duration_ms = kForever;  ///< the effect ends by itself; 0 is for ever, too
   std::uint8_t gain = 255;
   std::uint16_t direction_centidegrees = 9000;  ///< 0 to 35999; 9000 is X
 };
@@ -52,11 +52,13 @@ struct Magnitude {
 /// effect 0, or not finite.
 std::optional<Magnitude> encode_magnitude(std::uint8_t effect, double magnitude) noexcept;
 
-/// Effect Operation, report 0x0a: until the duration is over, 255 times; or at once.
-std::array<std::uint8_t, 4> start_effect(std::uint8_t effect) noexcept;
+/// Effect Operation, report 0x0a. An effect that is started again plays on, its duration from then. The firmware does not
+/// look at how often it is to be repeated (HidFFB.cpp, set_effect_operation); HID has 255 for ever.
+std::array<std::uint8_t, 4> start_effect(std::uint8_t effect, std::uint8_t times = 1) noexcept;
 std::array<std::uint8_t, 4> stop_effect(std::uint8_t effect) noexcept;
 
-/// Device Control, report 0x0c. Bits here, where the HID text has an index.
+/// Device Control, report 0x0c. Bits here, where the HID text has an index. `reset` deletes all effects. Set Effect enables the
+/// actuators, too, and makes the board tell its state, as nothing else does but creating an effect.
 enum class Control : std::uint8_t {
   enable_actuators = 0x01,
   disable_actuators = 0x02,
@@ -136,6 +138,14 @@ enum class AxisCommand : std::uint32_t {
   friction = 0x16,
   inertia = 0x17,
   exponent = 0x18,
+};
+/// Of class `main`.
+enum class MainCommand : std::uint32_t {
+  force_active = 0,  ///< 1: forces are on; 0: off; -1: the emergency stop is pressed
+};
+/// Of class `effects`.
+enum class EffectsCommand : std::uint32_t {
+  constant_filter_Hz = 0,  ///< low pass of constant forces; half the rate, which is the most: none
 };
 /// Of class `effects_manager`.
 enum class ManagerCommand : std::uint32_t {

@@ -25,11 +25,13 @@ constexpr Window window_of(const Place& place) noexcept {
 }
 
 constexpr std::int64_t extended(std::uint64_t bits, const Place& place) noexcept {
-  const bool negative = place.is_signed && ((bits >> (place.width_bits - 1)) & 1) != 0;
+  const bool negative =
+      place.is_signed && !place.is_float && ((bits >> (place.width_bits - 1)) & 1) != 0;
   return static_cast<std::int64_t>(negative ? bits | ~mask_of(place.width_bits) : bits);
 }
 
 double number_of(std::int64_t raw, const Place& place) noexcept {
+  if (place.is_float) return double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))};
   return place.is_signed ? static_cast<double>(raw)
                          : static_cast<double>(static_cast<std::uint64_t>(raw));
 }
@@ -53,11 +55,19 @@ Converted clipped_to_width(double counts, const Place& place) noexcept {
   return {static_cast<std::uint64_t>(counts), false};
 }
 
+/// Never beyond the largest single; and zero has no sign.
+Converted nearest_single(double number) noexcept {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const double clipped = std::clamp(number, -kLargest, kLargest);
+  return {std::bit_cast<std::uint32_t>(static_cast<float>(clipped) + 0.0F), clipped != number};
+}
+
 /// Precondition: `value` is finite; the map is good, so that nothing here is NaN.
 Converted convert(const OutputField& field, double value) noexcept {
   const double clipped = std::clamp(value, field.least, field.most);
-  Converted converted =
-      clipped_to_width(std::round((clipped - field.offset) / field.scale), field.place);
+  const double number = (clipped - field.offset) / field.scale;
+  Converted converted = field.place.is_float ? nearest_single(number)
+                                             : clipped_to_width(std::round(number), field.place);
   converted.saturated |= clipped != value;
   return converted;
 }
@@ -143,7 +153,9 @@ Reading decode(const InputMap& map, std::span<const std::uint8_t> report) noexce
   for (std::size_t i = 0; i < map.fields.size(); ++i) {
     const InputField& field = map.fields[i];
     reading.raw[i] = read_raw(report, field.place);
-    reading.value[i] = number_of(reading.raw[i], field.place) * field.scale + field.offset;
+    const double number = number_of(reading.raw[i], field.place);
+    reading.value[i] = number * field.scale + field.offset;
+    if (!std::isfinite(number)) reading.received = Received::out_of_range;
     if (field.modulus && !within(reading.raw[i], *field.modulus))
       reading.received = Received::out_of_range;
   }
@@ -201,6 +213,11 @@ std::optional<Encoded> encode(const OutputMap& map, std::span<const double> valu
   }
   put_heartbeat(map, heartbeat, encoded);
   return encoded;
+}
+
+double carried(const OutputField& field, double value) noexcept {
+  const std::int64_t raw = extended(convert(field, value).bits, field.place);
+  return number_of(raw, field.place) * field.scale + field.offset;
 }
 
 Encoded safe_report(const OutputMap& map, std::uint64_t heartbeat) noexcept {

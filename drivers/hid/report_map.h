@@ -21,13 +21,14 @@ inline constexpr std::size_t kMostFields = 16;
 
 enum class Endian : std::uint8_t { little, big };
 
-/// Where a whole number lies. Little endian: `offset_bits` is its lowest bit, and bit 0 the lowest of byte 0. Big endian:
-/// whole bytes, `offset_bits` the first of its first byte.
+/// Where a number lies. Little endian: `offset_bits` is its lowest bit, and bit 0 the lowest of byte 0. Big endian: whole
+/// bytes, `offset_bits` the first of its first byte.
 struct Place {
   std::uint32_t offset_bits = 0;
   std::uint32_t width_bits = 0;  ///< 1 to 64
   bool is_signed = false;        ///< two's complement
   Endian endian = Endian::little;
+  bool is_float = false;  ///< IEEE 754 binary32 in whole bytes: 32 bits, its sign is its own
   bool operator==(const Place&) const = default;
 };
 
@@ -35,7 +36,7 @@ struct Place {
 std::uint64_t read_bits(std::span<const std::uint8_t> report, const Place& place) noexcept;
 /// Puts the lowest bits of `bits` there and leaves the other bits of `report` alone. Precondition: as read_bits().
 void write_bits(std::span<std::uint8_t> report, const Place& place, std::uint64_t bits) noexcept;
-/// As read_bits(), with the sign extended. An unsigned number of 64 bits comes as its bits.
+/// As read_bits(), with the sign extended. An unsigned number of 64 bits comes as its bits, and a float as its 32.
 std::int64_t read_raw(std::span<const std::uint8_t> report, const Place& place) noexcept;
 
 /// What is wrong with a map.
@@ -44,12 +45,12 @@ enum class Fault : std::uint8_t {
   report_length,  ///< 0, more than kMostReportBytes, or an id and no data
   report_id,      ///< 0 is none
   too_many_fields,
-  width,        ///< 0 or more than 64
-  alignment,    ///< big endian, and not whole bytes
+  width,        ///< 0 or more than 64; a float of not 32, or as heartbeat
+  alignment,    ///< big endian or a float, and not whole bytes
   overrun,      ///< bits beyond the report
   overlap,      ///< with another field, the id, a constant, the heartbeat or the sequence number
   scale,        ///< 0; or it, the offset, or the value of some number is not finite
-  modulus,      ///< less than 2, more than the number can count, or more than 32 bits
+  modulus,      ///< less than 2, more than the number can count, more than 32 bits, or of a float
   limits,       ///< not in order, or NaN
   no_zero,      ///< value 0 is beyond the limits or the number: there is no way to say "no force"
   safe_report,  ///< another length or id than the report
@@ -90,9 +91,9 @@ Problem check(const InputMap& map) noexcept;
 
 enum class Received : std::uint8_t {
   ok,
-  ignore,        ///< a report of another id
-  malformed,     ///< another length than the map's
-  out_of_range,  ///< a counter or a sequence number that its modulus does not have
+  ignore,     ///< a report of another id
+  malformed,  ///< another length than the map's
+  out_of_range,  ///< a counter or a sequence number that its modulus does not have, or a float that is no number
 };
 struct Reading {
   Received received = Received::ignore;
@@ -170,15 +171,16 @@ using ReportBytes = std::array<std::uint8_t, kMostReportBytes>;
 struct Encoded {
   ReportBytes bytes{};
   std::size_t size = 0;
-  std::array<std::int64_t, kMostFields>
-      raw{};                    ///< by field; an unsigned one of 64 bits as its bits
-  std::uint32_t saturated = 0;  ///< bit i: field i was clipped
+  std::array<std::int64_t, kMostFields> raw{};  ///< by field, as read_raw()
+  std::uint32_t saturated = 0;                  ///< bit i: field i was clipped
   std::span<const std::uint8_t> report() const noexcept { return {bytes.data(), size}; }
 };
-/// One value a field, rounded half away from zero. `heartbeat`: its lowest bits are sent. Nothing: a value is not finite,
+/// One value a field, rounded half away from zero, a float to the nearest. `heartbeat`: its lowest bits are sent. Nothing: a value is not finite,
 /// or their number is not that of the fields; send the safe report then.
 std::optional<Encoded> encode(const OutputMap& map, std::span<const double> values,
                               std::uint64_t heartbeat) noexcept;
+/// The value that encode() sends for this one, which is finite.
+double carried(const OutputField& field, double value) noexcept;
 /// What to send on stopping.
 Encoded safe_report(const OutputMap& map, std::uint64_t heartbeat) noexcept;
 

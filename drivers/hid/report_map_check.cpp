@@ -16,8 +16,9 @@ class Taken {
   explicit Taken(std::size_t report_bytes) noexcept : bits_(report_bytes * 8) {}
   Fault take(const Place& place) noexcept {
     if (place.width_bits < 1 || place.width_bits > 64) return Fault::width;
-    if (place.endian == Endian::big && (place.offset_bits % 8 != 0 || place.width_bits % 8 != 0))
-      return Fault::alignment;
+    if (place.is_float && place.width_bits != 32) return Fault::width;
+    const bool whole_bytes = place.offset_bits % 8 == 0 && place.width_bits % 8 == 0;
+    if ((place.endian == Endian::big || place.is_float) && !whole_bytes) return Fault::alignment;
     if (place.offset_bits > bits_ || place.width_bits > bits_ - place.offset_bits)
       return Fault::overrun;
     for (std::size_t bit = place.offset_bits; bit < place.offset_bits + place.width_bits; ++bit) {
@@ -42,12 +43,14 @@ constexpr Place kIdPlace{.offset_bits = 0, .width_bits = 8};
 
 /// So that every number the place can hold has a finite value.
 bool legal_scale(double scale, double offset, const Place& place) noexcept {
-  const double most = std::ldexp(std::abs(scale), static_cast<int>(place.width_bits));
+  const double most = place.is_float
+                          ? std::abs(scale) * double{std::numeric_limits<float>::max()}
+                          : std::ldexp(std::abs(scale), static_cast<int>(place.width_bits));
   return scale != 0 && std::isfinite(most + std::abs(offset));
 }
 
 bool legal_modulus(std::uint64_t modulus, const Place& place) noexcept {
-  return place.width_bits <= 32 && modulus >= 2 && modulus <= kMostModulus &&
+  return !place.is_float && place.width_bits <= 32 && modulus >= 2 && modulus <= kMostModulus &&
          modulus <= std::uint64_t{1} << place.width_bits;
 }
 
@@ -79,6 +82,7 @@ Fault rest_fault(const OutputMap& map, Taken& taken) noexcept {
     if (const Fault fault = taken.take(place); fault != Fault::none) return fault;
   }
   if (map.heartbeat) {
+    if (map.heartbeat->is_float) return Fault::width;
     if (const Fault fault = taken.take(*map.heartbeat); fault != Fault::none) return fault;
   }
   if (map.safe.empty()) return Fault::none;
@@ -118,9 +122,9 @@ std::string_view words(Fault fault) noexcept {
     case Fault::too_many_fields:
       return "at most 16 fields";
     case Fault::width:
-      return "a field has 1 to 64 bits";
+      return "a field has 1 to 64 bits, a floating-point number 32, and a heartbeat is none";
     case Fault::alignment:
-      return "a big endian field is of whole bytes";
+      return "a big endian field and a floating-point number are of whole bytes";
     case Fault::overrun:
       return "runs beyond the report";
     case Fault::overlap:
@@ -129,7 +133,7 @@ std::string_view words(Fault fault) noexcept {
       return "scale must be finite and not 0, offset finite, and so all values";
     case Fault::modulus:
       return "a modulus is at least 2 and no more than an unsigned number of so many bits, at most "
-             "32, can count";
+             "32, can count; a floating-point number has none";
     case Fault::limits:
       return "limits are not in order";
     case Fault::no_zero:

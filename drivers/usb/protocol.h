@@ -24,6 +24,7 @@ struct Reading {
   std::uint32_t digital = 0;
   std::uint8_t homed = 0;  ///< a bit for each axis
   bool armed = false;      ///< power stage on: it follows forces
+  std::uint32_t failures = 0;  ///< how often the device has said that it cannot go on
   std::array<double, 6> analogue{};
 };
 
@@ -45,6 +46,8 @@ class Words {
  public:
   virtual ~Words() = default;
   virtual void say(std::string_view text) = 0;
+  /// Nobody waits for the device any more: give up.
+  virtual bool abandoned() const noexcept { return false; }
 };
 
 enum class Heard : std::uint8_t {
@@ -52,6 +55,7 @@ enum class Heard : std::uint8_t {
   sample,     ///< `reading` has a new one
   malformed,  ///< what no sound device sends: counted
   fault,      ///< the device says that it cannot go on: fault_text()
+  restarted,  ///< what was set up or counted is gone: to be opened anew; fault_text()
 };
 
 class Protocol {
@@ -68,7 +72,7 @@ class Protocol {
   /// Finds and opens the device and sets it up, without force. May take seconds. It is not opened afterwards where it fails.
   virtual Opened<Identity> open(Host& host, Words& words) = 0;
   virtual Port* port() noexcept = 0;  ///< while opened
-  /// What receive() gave. Fills all of `reading` but link and stamp_ns.
+  /// What receive() gave. Fills all of `reading` but link, stamp_ns and failures.
   virtual Heard take(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns,
                      Reading& reading) = 0;
   /// Sends what `command` wants, or the next step of switching the power stage on or off. Called at least every
@@ -78,6 +82,8 @@ class Protocol {
   /// Zero force and power off, as far as it can still be told within `until_ns`; then closed. Any time after open().
   virtual void close(Host& host, std::int64_t until_ns) noexcept = 0;
   virtual std::string_view fault_text() const noexcept { return {}; }
+  /// Samples that the device has sent and that never came, as far as it numbers them.
+  virtual std::uint64_t lost() const noexcept { return 0; }
   /// Of a question and its answer, or of the way out, as measured by open() [s]; 0: not measured.
   virtual double round_trip_s() const noexcept { return 0; }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/can/frame.h"
+#include "sim/motor.h"
 
 namespace hapticd::sim::can {
 
@@ -12,7 +13,7 @@ namespace hapticd::sim::can {
 inline constexpr std::int64_t kNever = INT64_MAX;
 
 /// Time is the host's [ns]; a drive's own clock may run off by `clock_drift` (share; > 0: fast).
-class Drive {
+class Drive : public Motor {
  public:
   /// What it wants to send, and the time from which on it may go.
   struct Outgoing {
@@ -23,7 +24,6 @@ class Drive {
   Drive() = default;
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
-  virtual ~Drive() = default;
 
   /// The frame is complete on the bus at `now_ns`.
   virtual void receive(const Frame& frame, std::int64_t now_ns) = 0;
@@ -33,10 +33,7 @@ class Drive {
   virtual std::int64_t next_ns() const = 0;
   /// That the motor makes now; 0 unless the power stage is on.
   virtual double torque_Nm() const = 0;
-  /// Power stage on, follows torque.
-  virtual bool enabled() const = 0;
-  /// The mechanics tell where the motor is.
-  virtual void move_to(double turns, double turns_s) = 0;
+  double torque() const final { return torque_Nm(); }
   /// Power cycle: all is as after boot.
   virtual void reset(std::int64_t now_ns) = 0;
   /// The drive finds a fault of its own (its protocol's code) and disarms.

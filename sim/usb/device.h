@@ -46,7 +46,7 @@ class Device {
   /// Of a HID interface; empty: it is none, or has no such one.
   virtual std::vector<std::uint8_t> report_descriptor(int interface) const = 0;
 
-  // -- transfers
+  // -- transfers. Those of endpoints come packet by packet: `in` ends a transfer with one that is not full.
   /// Class and vendor requests, and GET_DESCRIPTOR of a report is not among them. `data`: of one to the device.
   virtual Answer control(const Setup& setup, std::span<const std::uint8_t> data,
                          std::int64_t now_ns) = 0;

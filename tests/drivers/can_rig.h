@@ -18,9 +18,9 @@
 #include "drivers/can/can_device.h"
 #include "sim/can/cia402_drive.h"
 #include "sim/can/emulated_bus.h"
-#include "sim/can/emulated_device.h"
 #include "sim/can/moteus_drive.h"
 #include "sim/can/odrive_drive.h"
+#include "sim/emulated_device.h"
 #include "tests/drivers/system_calls.h"
 
 namespace hapticd::test {
@@ -48,14 +48,14 @@ class EmulatedRig {
  public:
   EmulatedRig(const can::DeviceOptions& device, const sim::DeviceOptions& truth,
               const Emulation& given, std::int64_t start_ns) {
-    std::vector<sim::can::EmulatedDevice::Motor> motors;
+    std::vector<sim::EmulatedDevice::Joint> joints;
     for (const can::DriveOptions& drive : device.drives) {
       drives_.push_back(make_drive(device, drive, given, start_ns));
       bus(drive.interface, given.wire).add(*drives_.back());
       const double turns_per_unit = drive.counts_per_unit / drive.counts_per_turn;
-      motors.push_back({.drive = drives_.back().get(), .turns_per_unit = turns_per_unit});
+      joints.push_back(sim::turning(*drives_.back(), turns_per_unit));
     }
-    body_ = std::make_unique<sim::can::EmulatedDevice>(truth, motors, given.step_s);
+    body_ = std::make_unique<sim::EmulatedDevice>(truth, joints, given.step_s);
     if (auto started = body_->start(); !started) throw std::runtime_error(started.error().text);
   }
   ~EmulatedRig() {
@@ -86,7 +86,7 @@ class EmulatedRig {
   int near_end(const std::string& interface) { return buses_.at(interface).near; }
   sim::can::EmulatedBus& bus(const std::string& interface) { return *buses_.at(interface).bus; }
   sim::can::Drive& drive(std::size_t axis) { return *drives_[axis]; }
-  sim::can::EmulatedDevice& body() { return *body_; }
+  sim::EmulatedDevice& body() { return *body_; }
   /// Closes the drives' end: the interface is gone.
   void unplug(const std::string& interface) {
     ::close(buses_.at(interface).far);
@@ -143,7 +143,7 @@ class EmulatedRig {
 
   std::map<std::string, One> buses_;
   std::vector<std::unique_ptr<sim::can::Drive>> drives_;
-  std::unique_ptr<sim::can::EmulatedDevice> body_;
+  std::unique_ptr<sim::EmulatedDevice> body_;
   bool held_ = false;
 };
 

@@ -94,11 +94,27 @@ def batches(vectors):
     yield "fuzz_socket", bytes([1, 2]) + 2 * frame_of(0x100, FD | FAST, data)
 
 
+def usb_hosts():
+    """(target, input): requests, whole and as bytes; sessions that submit, wait, take back, unplug."""
+    setup = bytes([0x80, 6, 0, 1, 0, 0, 18, 0])
+    submit = struct.pack(">IIIIIIIIII", 1, 1, 0x10002, 1, 0, 0, 18, 0, 0xFFFFFFFF, 0) + setup
+    unlink = struct.pack(">IIIIII24x", 2, 9, 0x10002, 0, 0, 1)
+    reply = struct.pack(">IIIIIIIIII8x", 3, 1, 0, 0, 0, 0, 18, 0, 0xFFFFFFFF, 0)
+    imported = struct.pack(">HHI40s", 0x0111, 0x8003, 0, b"1-1")
+    for message in (submit, unlink, reply, imported):
+        yield "fuzz_usbip", bytes([0]) + message
+    answered = bytes([0x40, 1, 1, 0, 18]) + setup + bytes([0x40, 2, 0, 2, 8]) + bytes(8)
+    waiting = bytes([0x40, 3, 1, 1, 64]) + bytes(8) + bytes([0x03, 3])
+    for end in (bytes([0x06]), bytes([0x07, 60]) + submit, bytes([0x45, 5, 0x44, 1])):
+        yield "fuzz_usbip", bytes([1, 0, 0, 0, 0]) + answered + waiting + end
+        yield "fuzz_usbip", bytes([1, 1, 1, 1, 1]) + 2 * answered + waiting + end
+
+
 def main():
     vectors = json.loads(pathlib.Path(sys.argv[1]).read_text())
     out = pathlib.Path(sys.argv[2])
     count = {}
-    for source in (frames(vectors), edges(), lives(), numbers(), batches(vectors)):
+    for source in (frames(vectors), edges(), lives(), numbers(), batches(vectors), usb_hosts()):
         for target, content in source:
             folder = out / target
             folder.mkdir(parents=True, exist_ok=True)

@@ -213,7 +213,7 @@ class Ticks {
   Input& input_;
   Link& link_;
   can::Outbox outbox_;
-  can::FaultText text_;
+  drivers::FaultText text_;
   std::int64_t start_ns_ = link_.now_ns();
   bool wanted_ = false;
   bool any_torque_ = false;

@@ -55,6 +55,17 @@ TEST_F(CanDaemon, EmulateAndDevicesEndWith69WhereThereIsNoBus) {
   EXPECT_TRUE(daemon::Json::parse(ctl_out_, nullptr, false)["can"][0]["problem"].is_string());
 }
 
+TEST_F(CanDaemon, DevicesListsBothKindsAndEndsWith69OnlyWhereNothingCanBeUsed) {
+  const int code = ctl({"devices", "--seconds", "0.05", "--json"});
+  const auto answer = daemon::Json::parse(ctl_out_, nullptr, false);
+  ASSERT_TRUE(answer.is_object()) << ctl_out_ << ctl_err_;
+  EXPECT_TRUE(answer["can"].is_array());
+  EXPECT_TRUE(answer["usb"].is_array());
+  EXPECT_EQ(code, answer["ok"] == true ? 0 : 69);
+  EXPECT_EQ(ctl({"devices", "--seconds", "0.05"}), code);
+  EXPECT_THAT(ctl_out_, HasSubstr("USB"));
+}
+
 TEST_F(CanDaemon, AFaultThatCannotBeReadIsRefusedWithItsForm) {
   write_file("config.yaml", can_config());
   EXPECT_EQ(ctl({"emulate", config_, "--bus", "elsewhere"}), 1);

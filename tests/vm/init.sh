@@ -42,7 +42,8 @@ while read -r module; do
   fi
 done < /etc/modules
 only=$(sed -n 's/.*vm_only=\([^ ]*\).*/\1/p' /proc/cmdline)
-for script in /vm/guest/[0-9]*.sh; do
+suite=$(sed -n 's/.*vm_suite=\([^ ]*\).*/\1/p' /proc/cmdline)
+for script in "/vm/guest/${suite:+$suite/}"[0-9]*.sh; do
   case $script in *"$only"*) run_check "$script" ;; esac
 done
 

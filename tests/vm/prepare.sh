@@ -10,7 +10,8 @@ export LC_ALL=C # what apt says is read
 
 # What is unpacked; pack.sh chooses among it.
 readonly wanted=('./boot/vmlinuz-*' './lib/modules/*/modules.*' './lib/modules/*/kernel/drivers/net/can'
-  './lib/modules/*/kernel/net/can' './lib/modules/*/kernel/net/sched/sch_netem.ko')
+  './lib/modules/*/kernel/net/can' './lib/modules/*/kernel/net/sched/sch_netem.ko'
+  './lib/modules/*/kernel/drivers/usb' './lib/modules/*/kernel/drivers/hid')
 
 say() { echo "vm: $*" >&2; }
 environment() {

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it. Prints one line a check.
+# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it, then once more for
+# guest/beside/*.sh. Prints one line a check.
 # Exit: 0 all passed, 1 not so, 64 usage, 69 the kernel cannot be downloaded, 77 skipped: something is not installed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 usage() {
   cat << 'END'
-usage: tests/vm/run.sh [--suite a] [--build DIR] [--only TEXT] [PROGRAM...]
-  --suite a     the kernel's interfaces: the only suite
+usage: tests/vm/run.sh [--suite a|beside] [--build DIR] [--only TEXT] [PROGRAM...]
+  --suite a       the kernel's interfaces, in guest time alone
+  --suite beside  devices of QEMU with a program beside it, in the host's time (both)
   --build DIR   where hapticd and hapticctl were built (build)
   --only TEXT   only the scripts of tests/vm/guest with TEXT in their name
   PROGRAM       further programs for the guest, into its /usr/bin
@@ -17,13 +19,19 @@ END
 
 build=build
 only=
+suites=(a beside)
 programs=()
 while [ $# -gt 0 ]; do
   case $1 in
     --suite | --build | --only)
       [ $# -ge 2 ] || { usage >&2 && exit 64; }
       case $1 in
-        --suite) [ "$2" = a ] || { echo "tests/vm/run.sh: no suite $2" >&2 && exit 64; } ;;
+        --suite)
+          case $2 in
+            a | beside) suites=("$2") ;;
+            *) echo "tests/vm/run.sh: no suite $2" >&2 && exit 64 ;;
+          esac
+          ;;
         --build) build=$2 ;;
         --only) only=$2 ;;
       esac
@@ -37,7 +45,7 @@ while [ $# -gt 0 ]; do
 done
 
 missing=()
-for tool in qemu-system-x86_64 busybox cpio modprobe depmod ip tc candump cansend cyclictest python3; do
+for tool in qemu-system-x86_64 busybox cpio modprobe depmod ip tc candump cansend cyclictest python3 strace udevadm; do
   PATH=$PATH:/sbin:/usr/sbin command -v "$tool" > /dev/null || missing+=("$tool")
 done
 if [ "${#missing[@]}" -gt 0 ]; then
@@ -47,9 +55,10 @@ if [ "${#missing[@]}" -gt 0 ]; then
 fi
 
 mkdir -p build/vm
-started=$SECONDS
 kernel_directory=$(tests/vm/prepare.sh)
 prepared=$SECONDS
+# A firmware that no Falcon has.
+python3 -c 'import random, sys; sys.stdout.buffer.write(random.Random(1).randbytes(7914))' > build/vm/falcon.bin
 tests/vm/pack.sh "$kernel_directory" build/vm/initramfs "$build/daemon/hapticd" "$build/daemon/hapticctl" "${programs[@]}"
 packed=$SECONDS
 
@@ -72,28 +81,53 @@ must_not_pass 33 "$good" 'and more'
 must_not_pass 33 'hapticd-vm: passed, 0 checks'
 
 # Why each option is there: README.md. Never KVM, not even as a choice.
-code=0
-timeout 300 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -icount shift=0,sleep=off \
-  -rtc base=2026-01-01T00:00:00,clock=vm -seed 1 -nographic -no-reboot -nodefaults -serial stdio -monitor none \
-  -device isa-debug-exit,iobase=0xf4,iosize=0x04 \
-  -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb \
-  -kernel "$kernel_directory/vmlinux" -initrd build/vm/initramfs \
-  -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr${only:+ vm_only=$only}" \
-  < /dev/null > build/vm/serial.log 2>&1 || code=$?
+boot() { # boot <serial log> <words for the kernel> <option>...
+  timeout 600 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -seed 1 -nographic -no-reboot -nodefaults \
+    -serial stdio -monitor none -device isa-debug-exit,iobase=0xf4,iosize=0x04 "${@:3}" \
+    -kernel "$kernel_directory/vmlinux" -initrd build/vm/initramfs \
+    -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr $2${only:+ vm_only=$only}" < /dev/null > "$1" 2>&1
+}
+boot_a() {
+  boot build/vm/serial.log '' -icount shift=0,sleep=off -rtc base=2026-01-01T00:00:00,clock=vm \
+    -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb
+}
+# A Falcon's board, to which QEMU's bridge has a line.
+boot_beside() {
+  local code=0 line=build/vm/line board
+  [ -x "$build/tests/falcon_line" ] || { echo "vm: not built: $build/tests/falcon_line" >&2 && return 1; }
+  rm -f "$line"
+  "$build/tests/falcon_line" "$line" tests/vm/configs/usb_serial.yaml build/vm/falcon.bin > build/vm/falcon_line.json &
+  board=$!
+  boot build/vm/beside.log vm_suite=beside -device piix3-usb-uhci -chardev "socket,id=line,path=$line,server=on,wait=off" \
+    -device usb-serial,chardev=line || code=$?
+  wait "$board" || true
+  echo "falcon_line: $(cat build/vm/falcon_line.json)"
+  return "$code"
+}
 
-tr -d '\r' < build/vm/serial.log | grep -aE '^(ok|FAILED|hapticd-vm:) ' || true
-took="$((prepared - started)) s prepare, $((packed - prepared)) s pack, $((SECONDS - packed)) s run"
-if passed "$code" build/vm/serial.log; then
-  echo "vm: passed; $took"
-  exit 0
-fi
-case $code in
-  35) why="checks failed" ;;
-  124) why="not done after 300 s" ;;
-  33) why="the exit code and the lines contradict each other" ;;
-  *) why="QEMU ended with $code: a panic, a power-off or an option that it does not know" ;;
-esac
-# What the checks told of their failures, and what the kernel said.
-grep -avE '^ok ' build/vm/serial.log | tail -n 60 >&2 || true
-echo "vm: FAILED: $why; $took; all that was said: build/vm/serial.log"
-exit 1
+failed=0
+for suite in "${suites[@]}"; do
+  started=$SECONDS
+  log=build/vm/serial.log
+  [ "$suite" = a ] || log=build/vm/$suite.log
+  code=0
+  "boot_$suite" || code=$?
+  tr -d '\r' < "$log" | grep -aE '^(ok|FAILED|hapticd-vm:) ' || true
+  took="$((SECONDS - started)) s"
+  if passed "$code" "$log"; then
+    echo "vm: $suite passed; $took"
+    continue
+  fi
+  failed=1
+  case $code in
+    35) why="checks failed" ;;
+    124) why="not done after 600 s" ;;
+    33) why="the exit code and the lines contradict each other" ;;
+    *) why="QEMU ended with $code: a panic, a power-off or an option that it does not know" ;;
+  esac
+  # What the checks told of their failures, and what the kernel said.
+  grep -avE '^ok ' "$log" | tail -n 60 >&2 || true
+  echo "vm: FAILED: $suite: $why; $took; all that was said: $log"
+done
+[ "$failed" -eq 0 ] || exit 1
+echo "vm: passed; $((packed - prepared)) s pack, $SECONDS s in all"

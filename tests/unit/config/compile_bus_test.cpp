@@ -94,9 +94,10 @@ TEST(CompileCan, KeysOfABusStandWithADriverForOne) {
   expect_error(replaced(kCan, "        can: {node: 3, counts_per_turn: 8192}\n", ""), "10:9",
                "devices[0].axes[0].can", {"missing"});
   const std::string simulated = listed(errors_of(replaced(kCan, "odrive", "sim")));
-  EXPECT_NE(simulated.find("devices[0].can: driver: sim has no bus"), std::string::npos)
+  EXPECT_NE(simulated.find("devices[0].can: driver: sim has no CAN bus"), std::string::npos)
       << simulated;
-  EXPECT_NE(simulated.find("axes[0].can: driver: sim has no bus"), std::string::npos) << simulated;
+  EXPECT_NE(simulated.find("axes[0].can: driver: sim has no CAN bus"), std::string::npos)
+      << simulated;
 }
 
 /// hapticd gives up before a drive does, and a hand never waits longer than 50 ms.

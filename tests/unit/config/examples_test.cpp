@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "control/kinematics/kinematics.h"
 #include "tests/unit/config/support.h"
 
 namespace hapticd::config::test {
@@ -15,7 +16,7 @@ TEST(Examples, EveryOneCompiles) {
     ++count;
     EXPECT_TRUE(load(entry.path().string())) << entry.path();
   }
-  EXPECT_GE(count, 13);
+  EXPECT_GE(count, 18);
 }
 
 TEST(Examples, WallMeetsItsOwnInequality) {
@@ -198,6 +199,34 @@ TEST(Examples, CouplingIsReadFromItsFileAndRigidBehindIt) {
   EXPECT_EQ(spec.encounters.at(0).surface.compliance, control::kRigidCompliance);
   EXPECT_LT(spec.coupling[0].stiffness(0, 0) * 0.001 / 2 + spec.coupling[0].damping(0, 0),
             compiled.assumed[0].min_damping[0]);
+}
+
+/// A device on USB is said to need no more latency than it has, and no less than its times add up to.
+TEST(Examples, DevicesOnUsbHaveTheLatencyThatTheirTimesAddUpTo) {
+  for (const char* name :
+       {"falcon.yaml", "wooden_haptics.yaml", "teensy_rawhid.yaml", "openffboard_wheel.yaml"}) {
+    const Compiled compiled = example(name);
+    ASSERT_TRUE(compiled.usb.at(0)) << name;
+    const usb::DeviceOptions& device = *compiled.usb[0];
+    EXPECT_NEAR(compiled.assumed[0].latency_s,
+                device.worst_sample_age_s + device.send_s + device.drive_delay_s + 50e-6, 1e-12)
+        << name;
+    EXPECT_FALSE(compiled.simulated[0].axes.empty()) << name << ": nothing to emulate";
+  }
+}
+
+/// Its public driver: cos(A) (Lb sin(B) + Lc cos(B + C)), Ln + Lb cos(B) - Lc sin(B + C), C against body B.
+TEST(Examples, WoodenHapticsIsTheChainOfItsPublicDriver) {
+  const Compiled wood = example("wooden_haptics.yaml");
+  const control::Serial& chain = wood.program->plan().serials[0];
+  const double A = 0.2, B = -0.3, C = 0.4;
+  const std::array<double, 3> q{A, B, C};
+  control::LinkagePose pose;
+  ASSERT_TRUE(control::pose_of(chain, q.data(), pose));
+  const double radius = 0.205 * std::sin(B) + 0.245 * std::cos(B + C);
+  EXPECT_NEAR(pose.tip[0], std::cos(A) * radius, 1e-9);
+  EXPECT_NEAR(pose.tip[1], std::sin(A) * radius, 1e-9);
+  EXPECT_NEAR(pose.tip[2], 0.080 + 0.205 * std::cos(B) - 0.245 * std::sin(B + C), 1e-9);
 }
 
 TEST(Examples, MeshIsTouchedWithABall) {

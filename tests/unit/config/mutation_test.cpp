@@ -14,7 +14,8 @@ const std::vector<std::string>& examples() {
     std::vector<std::string> all;
     for (const char* name :
          {"wall", "two_devices", "paper2_wall", "five_bar", "falcon_sim", "observer", "homing",
-          "coupling", "friction", "guides", "mesh", "moving", "paper1_example1"}) {
+          "coupling", "friction", "guides", "mesh", "moving", "paper1_example1", "falcon",
+          "wooden_haptics", "teensy_rawhid", "openffboard_wheel"}) {
       all.push_back(file_text(source_path("config/examples/" + std::string(name) + ".yaml")));
     }
     return all;

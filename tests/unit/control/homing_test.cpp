@@ -273,5 +273,33 @@ TEST(Homing, AxesAreSearchedOneAfterTheOther) {
   EXPECT_NEAR(rig.program.state().q[1], 0.1, 1e-6);
 }
 
+TEST(Homing, WhatWasFoundIsForgottenWhenTheDeviceComesBack) {
+  Bench bench(plan(HomingBy::hard_stop, -1));
+  bench.tick();
+  bench.until_not(Mode::homing, 8000);
+  ASSERT_EQ(bench.mode(), Mode::enabled);
+  bench.rig.input.host_fault = {.code = Fault::device, .device = 0};
+  bench.tick();
+  bench.rig.input.host_fault = {};
+  bench.rig.input.enable = false;
+  bench.rig.input.clear_fault = true;
+  bench.tick();
+  bench.rig.input.clear_fault = false;
+  ASSERT_EQ(bench.mode(), Mode::idle);
+  ASSERT_TRUE(bench.rig.program.state().axes[0].homed);
+
+  bench.slider.start = bench.slider.x + 0.004;  // it counts from where it was switched on
+  bench.rig.samples[0].raw = bench.slider.encoder() / 1e-6;
+  bench.rig.samples[0].freshness = Freshness::first;
+  bench.rig.run();
+  EXPECT_FALSE(bench.rig.program.state().axes[0].homed);
+  bench.rig.samples[0].freshness = Freshness::fresh;
+  bench.rig.input.enable = true;
+  EXPECT_EQ(bench.tick().mode, Mode::homing);
+  bench.until_not(Mode::homing, 8000);
+  ASSERT_EQ(bench.mode(), Mode::enabled);
+  EXPECT_NEAR(bench.q(), 0.1, 1e-6) << "the stop is where homing.position says, again";
+}
+
 }  // namespace
 }  // namespace hapticd::control

@@ -74,6 +74,26 @@ TEST(Sense, MissingSampleIsHeldAndNoDifferenceTakenOverIt) {
   EXPECT_EQ(rig.program.state().qd[0], 0.0);
 }
 
+TEST(Sense, DeviceThatComesBackCountsFromElsewhere) {
+  auto spec = spec_of(1);
+  spec.axes[0].modulus_raw = 65536;
+  Rig rig(spec);
+  rig.samples[0].raw = 30000;
+  rig.again();
+  rig.samples[0].raw = 40000;  // past half of the range: counted on
+  rig.again();
+  EXPECT_NEAR(rig.program.state().q[0], 40000e-6, 1e-12);
+  rig.samples[0].freshness = Freshness::missing;
+  rig.run();
+  rig.samples[0] = {.raw = 65535, .freshness = Freshness::first};
+  const TickOutput output = rig.run();
+  EXPECT_NEAR(rig.program.state().q[0], -1e-6, 1e-12) << "as if it had just been connected";
+  EXPECT_EQ(rig.program.state().qd[0], 0.0);
+  EXPECT_EQ(output.fault.code, Fault::none);
+  EXPECT_FALSE(rig.program.state().ledger[0].known && rig.program.state().ledger[0].moved != 0)
+      << "it did no work on the way";
+}
+
 TEST(Sense, ReversedEncoderWithOffset) {
   auto spec = spec_of(1);
   spec.axes[0].unit_per_raw = -1e-6;

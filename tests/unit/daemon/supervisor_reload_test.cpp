@@ -121,6 +121,17 @@ TEST(Reload, DevicesAndAxesNeedARestart) {
               refused_for("devices[0].workspace_scale"));
 }
 
+TEST(Reload, WhatADeviceOnUsbIsToldNeedsARestart) {
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].usb = config::UsbDevice{.serial = "a"}; }),
+              refused_for("devices[0].usb"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].falcon = config::Falcon{}; }),
+              refused_for("devices[0].falcon"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].report = config::Report{}; }),
+              refused_for("devices[0].report"));
+  EXPECT_THAT(after_config([](auto& c) { c.devices[0].openffboard = config::OpenFfboard{}; }),
+              refused_for("devices[0].openffboard"));
+}
+
 TEST(Reload, WhereAnAxisFindsItsReferenceNeedsARestart) {
   EXPECT_THAT(after_config([](auto& c) {
                 c.devices[0].axes[0].homing.by = config::HomingMethod::hard_stop;

@@ -1,5 +1,5 @@
 // Motors and mechanics together.
-#include "sim/can/emulated_device.h"
+#include "sim/emulated_device.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@ namespace hapticd::test::emulator {
 namespace {
 
 using namespace sim::can;
+using sim::EmulatedDevice, sim::turning;
 
 sim::DeviceOptions free_mass(double mass_kg, double at_m = 0) {
   sim::DeviceOptions options;
@@ -28,7 +29,7 @@ sim::DeviceOptions free_mass(double mass_kg, double at_m = 0) {
 
 TEST(EmulatedDevice, TellsTheDrivesWhereTheirMotorsAre) {
   EchoDrive drive(1);
-  EmulatedDevice device(free_mass(1, 0.5), {{&drive, -4, 0.25}});
+  EmulatedDevice device(free_mass(1, 0.5), {turning(drive, -4, 0.25)});
   ASSERT_TRUE(device.start());
   device.advance(123);
   EXPECT_DOUBLE_EQ(device.position(0), 0.5);
@@ -41,7 +42,7 @@ TEST(EmulatedDevice, TorqueBecomesForceThroughTheTransmission) {
   drive.on = true;
   drive.torque = 0.2;
   const double turns_per_m = -25;
-  EmulatedDevice device(free_mass(2), {{&drive, turns_per_m}});
+  EmulatedDevice device(free_mass(2), {turning(drive, turns_per_m)});
   ASSERT_TRUE(device.start());
   device.advance(0);
   for (int i = 1; i <= 100; ++i) device.advance(i * kMs);
@@ -58,7 +59,7 @@ TEST(EmulatedDevice, BetweenStepsItGoesOnWithItsVelocity) {
   EchoDrive drive(1);
   drive.on = true;
   drive.torque = 1;
-  EmulatedDevice device(free_mass(1), {{&drive, 1}}, 1e-3);
+  EmulatedDevice device(free_mass(1), {turning(drive, 1)}, 1e-3);
   ASSERT_TRUE(device.start());
   device.advance(0);
   device.advance(10 * kMs);
@@ -73,7 +74,7 @@ TEST(EmulatedDevice, BetweenStepsItGoesOnWithItsVelocity) {
 TEST(EmulatedDevice, ADisabledDriveMakesNoForce) {
   EchoDrive drive(1);
   drive.torque = 1;
-  EmulatedDevice device(free_mass(1), {{&drive}});
+  EmulatedDevice device(free_mass(1), {turning(drive)});
   ASSERT_TRUE(device.start());
   device.advance(0);
   device.advance(100 * kMs);
@@ -85,7 +86,7 @@ TEST(EmulatedDevice, TheHandsScriptStartsWithTheFirstDrive) {
   options.hand.script = {{.at_s = 0, .force_N = 3, .position_m = 0}};
   options.ramp_s = 0.01;
   EchoDrive drive(1);
-  EmulatedDevice device(options, {{&drive}});
+  EmulatedDevice device(options, {turning(drive)});
   ASSERT_TRUE(device.start());
   device.advance(0);
   device.advance(100 * kMs);
@@ -103,7 +104,7 @@ TEST(EmulatedDevice, MotorsMustFitTheAxes) {
   ASSERT_FALSE(started);
   EXPECT_NE(started.error().text.find("1 axes, found 0"), std::string::npos);
   EchoDrive drive(1);
-  EXPECT_FALSE(EmulatedDevice(free_mass(-1), {{&drive}}).start());
+  EXPECT_FALSE(EmulatedDevice(free_mass(-1), {turning(drive)}).start());
 }
 
 }  // namespace

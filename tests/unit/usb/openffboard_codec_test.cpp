@@ -154,7 +154,8 @@ std::string of_session(const usb::Bytes& report) {
     case 0x11:
       return hex(kCreateConstantForce);
     case 0x0a:
-      return hex(report.at(2) == 1 ? start_effect(report[1]) : stop_effect(report[1]));
+      return hex(report.at(2) == 1 ? start_effect(report[1], report.at(3))
+                                   : stop_effect(report[1]));
     case 0x0c:
       return hex(device_control(static_cast<Control>(report.at(1))));
     case 0x0d:

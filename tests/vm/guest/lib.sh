@@ -92,3 +92,56 @@ run_gtest() {
 json() { sed -n "s/.*\"$2\":\"\{0,1\}\([^,\"}]*\).*/\1/p" "$1"; }
 # summary_line <file> <label>: what follows the label in hapticd's summary.
 summary_line() { sed -n "/^  *$2 /{s/^  *$2  *//p;q}" "$1"; }
+
+# -- USB
+
+# usb_up: modules and udevd, which the checks of USB share.
+usb_up() {
+  mkdir -p /run/lock
+  for module in uhci-hcd vhci-hcd hid-generic usbhid uhid; do modprobe "$module"; done
+  pidof systemd-udevd > /dev/null && return
+  systemd-udevd --daemon 2> "$scratch/udevd"
+  udevadm trigger --action=add
+  udevadm settle --timeout=20
+}
+
+# emulate <config> [option]...: in the background; takes faults by `befall KIND:NAME[@SECONDS]`. Ends with `emulated`.
+emulate() {
+  rm -f "$scratch/faults"
+  mkfifo "$scratch/faults"
+  hapticctl emulate "$@" --json --fault - < "$scratch/faults" > "$scratch/emulated" 2> "$scratch/emulate.log" &
+  emulator=$!
+  exec 3> "$scratch/faults"
+}
+befall() { echo "$1" >&3; }
+# emulated: ends it. 0: it ran to here, and $scratch/emulated says what the motors did.
+emulated() {
+  exec 3>&-
+  kill -TERM "$emulator" 2> /dev/null || return 1
+  wait "$emulator"
+}
+# phase <since> <key> [number]: what the motors did since that befell the device, of several the last or that one.
+phase() {
+  sed 's/{"since"/\n&/g' "$scratch/emulated" | grep "^{\"since\":\"$1\"" | sed -n "${3:-\$}s/.*\"$2\":\([^,}]*\).*/\1/p"
+}
+
+# usb_node <vendor:product>: the device's node; fails where there is none.
+usb_node() {
+  for device in /sys/bus/usb/devices/*; do
+    [ -e "$device/idVendor" ] || continue
+    [ "$(cat "$device/idVendor"):$(cat "$device/idProduct")" = "$1" ] || continue
+    sed -n 's/^DEVNAME=/\/dev\//p' "$device/uevent"
+    return
+  done
+  return 1
+}
+# hidraw_node <VENDOR:PRODUCT, 8 digits each, in capitals>
+hidraw_node() {
+  for node in /sys/class/hidraw/*; do
+    [ -e "$node" ] || continue
+    grep -q ":$1\$" "$node/device/uevent" || continue
+    echo "/dev/${node##*/}"
+    return
+  done
+  return 1
+}

@@ -1,12 +1,11 @@
-#include "sim/can/emulated_device.h"
+#include "sim/emulated_device.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
-namespace hapticd::sim::can {
+namespace hapticd::sim {
 namespace {
 
 DeviceOptions ideal(DeviceOptions truth, double step_s) {
@@ -26,16 +25,16 @@ DeviceOptions ideal(DeviceOptions truth, double step_s) {
 
 }  // namespace
 
-EmulatedDevice::EmulatedDevice(DeviceOptions truth, std::vector<Motor> motors, double step_s)
-    : motors_(std::move(motors)), step_s_(step_s), device_(ideal(std::move(truth), step_s)) {}
+EmulatedDevice::EmulatedDevice(DeviceOptions truth, std::vector<Joint> joints, double step_s)
+    : joints_(std::move(joints)), step_s_(step_s), device_(ideal(std::move(truth), step_s)) {}
 
 Result<void> EmulatedDevice::start() {
   const std::size_t axes = device_.options().axes.size();
-  if (motors_.size() != axes) {
+  if (joints_.size() != axes) {
     return hapticd::fail(ExitCode::bad_data, "emulated device " + device_.options().name +
                                                  ": expected a motor for " + "each of " +
                                                  std::to_string(axes) + " axes, found " +
-                                                 std::to_string(motors_.size()));
+                                                 std::to_string(joints_.size()));
   }
   const Result<drivers::DeviceInfo> connected = device_.connect();
   if (!connected) return tl::unexpected<Error>(connected.error());
@@ -52,12 +51,12 @@ void EmulatedDevice::advance(std::int64_t now_ns) {
     running_ = true;
     start_ns_ = now_ns_ = now_ns;
     device_.request({});
-    move_drives();
+    move_motors();
     return;
   }
   while (step_end_ns() <= now_ns) step();
   now_ns_ = std::max(now_ns_, now_ns);
-  move_drives();
+  move_motors();
 }
 
 std::int64_t EmulatedDevice::step_end_ns() const {
@@ -65,10 +64,10 @@ std::int64_t EmulatedDevice::step_end_ns() const {
 }
 
 void EmulatedDevice::step() {
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    const Drive& drive = *motors_[i].drive;
-    armed_ = armed_ || drive.enabled();
-    efforts_[i] = drive.torque_Nm() * 2 * std::numbers::pi * motors_[i].turns_per_unit;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Motor& motor = *joints_[i].motor;
+    armed_ = armed_ || motor.enabled();
+    efforts_[i] = motor.torque() * joints_[i].effort_per_torque;
   }
   Aux aux{};
   device_.set_armed(armed_);
@@ -77,14 +76,14 @@ void EmulatedDevice::step() {
   now_ns_ = step_end_ns();
   ++tick_;
   device_.request({.tick = tick_, .start_ns = now_ns_, .deadline_ns = now_ns_});
-  move_drives();
+  move_motors();
 }
 
-void EmulatedDevice::move_drives() {
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    const Motor& motor = motors_[i];
-    motor.drive->move_to(motor.turns_per_unit * position(i) + motor.offset_turns,
-                         motor.turns_per_unit * device_.truth(i).velocity_m_s);
+void EmulatedDevice::move_motors() {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = joints_[i];
+    joint.motor->move_to(joint.turns_per_unit * position(i) + joint.offset_turns,
+                         joint.turns_per_unit * device_.truth(i).velocity_m_s);
   }
 }
 
@@ -96,4 +95,4 @@ double EmulatedDevice::position(std::size_t axis) const {
   return truth.position_m + truth.velocity_m_s * since_s;
 }
 
-}  // namespace hapticd::sim::can
+}  // namespace hapticd::sim
