@@ -60,8 +60,13 @@ bool has_keys(Compilation& compilation, const DevicePlace& place, std::optional<
 }
 
 double send_s(const UsbPlace& place) {
-  const bool libusb = usb_transport(place) == usb::Transport::libusb;
-  return place.keys.send_s.value_or(libusb ? 0.001 : 0.002);
+  const bool board = place.kind == usb::Kind::openffboard;
+  const double axes = static_cast<double>(place.device.device.axes.size());
+  return place.keys.send_s.value_or(2e-3 + (board ? 1e-3 * axes : 0));
+}
+
+double arrival_age_s(const UsbPlace& place) {
+  return place.keys.arrival_age_s.value_or(place.kind == usb::Kind::openffboard ? 3e-3 : 1e-3);
 }
 
 double max_age_s(const UsbPlace& place) {
@@ -73,7 +78,7 @@ double silence_s(const UsbPlace& place) {
 }
 
 void check_ages(const UsbPlace& place) {
-  const double least_s = place.keys.arrival_age_s + kInterval_s;
+  const double least_s = arrival_age_s(place) + kInterval_s;
   if (max_age_s(place) < least_s - kRounding)
     place.refuse("usb.max_age_s",
                  "expected at least " + time_text(least_s) +
@@ -173,7 +178,7 @@ usb::DeviceOptions options_of(const UsbPlace& place) {
   options.kind = place.kind;
   options.selection = compile_selection(place);
   options.period_s = place.compilation.spec.period_s;
-  options.arrival_age_s = place.keys.arrival_age_s;
+  options.arrival_age_s = arrival_age_s(place);
   options.worst_sample_age_s = max_age_s(place);
   options.send_s = send_s(place);
   options.drive_delay_s = place.keys.drive_delay_s;

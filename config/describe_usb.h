@@ -33,23 +33,26 @@ void describe(V& v, UsbDevice& s) {
   v.optional(
       "arrival_age_s", s.arrival_age_s,
       {.about = "how old a sample is when it arrives, at most: the device's own time and the "
-                "wire's",
+                "wire's; null: 0.001 s; an openffboard, whose answers stand for positions: 0.003 s",
        .min = 0,
        .max = 0.1,
        .unit = "s"});
-  v.optional("max_age_s", s.max_age_s,
-             {.about = "an older sample is missing; at least arrival_age_s and 1 ms, in which the "
-                       "next one comes; null: 0.0025 s; an openffboard, which has to be asked while "
-                       "nothing moves: 0.008 s",
+  v.optional(
+      "max_age_s", s.max_age_s,
+      {.about = "an older sample is missing; at least arrival_age_s and 1 ms, in which the "
+                "next one comes; null: 0.0025 s; an openffboard, which has to be asked while "
+                "nothing moves: 0.008 s",
+       .min = 0,
+       .max = 0.1,
+       .above_min = true,
+       .unit = "s"});
+  v.optional("send_s", s.send_s,
+             {.about = "a command is with the device after so long, at most, the one included "
+                       "that is on its way when it is given; null: 0.002 s; an openffboard, which "
+                       "is told one thing a millisecond: 0.001 s more for each axis",
               .min = 0,
               .max = 0.1,
               .above_min = true,
-              .unit = "s"});
-  v.optional("send_s", s.send_s,
-             {.about = "a command is with the device after so long, at most; null: 0.001 s by "
-                       "libusb, 0.002 s by hidapi, which waits for a sample or 1 ms first",
-              .min = 0,
-              .max = 0.1,
               .unit = "s"});
   v.optional("drive_delay_s", s.drive_delay_s,
              {.about = "an effort acts so long after its command came, at most",

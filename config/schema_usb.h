@@ -17,9 +17,9 @@ struct UsbDevice {
   std::optional<std::string> usage{};             ///< HID: "page:usage"
   UsbTransport transport = UsbTransport::hidapi;  ///< HID
   int reads = 2;                                  ///< libusb
-  double arrival_age_s = 1e-3;
-  std::optional<double> max_age_s{};  ///< default: 2.5 ms; of an openffboard 8 ms
-  std::optional<double> send_s{};  ///< default: 1 ms by libusb, 2 ms by hidapi
+  std::optional<double> arrival_age_s{};          ///< default: 1 ms; of an openffboard 3 ms
+  std::optional<double> max_age_s{};              ///< default: 2.5 ms; of an openffboard 8 ms
+  std::optional<double> send_s{};  ///< default: 2 ms; of an openffboard 2 ms and 1 ms for each axis
   double drive_delay_s = 1e-4;
   double watchdog_s = 0.02;
   std::optional<double> silence_s{};  ///< default: 0.1; of an openffboard 0.15

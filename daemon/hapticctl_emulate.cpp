@@ -158,10 +158,10 @@ class Emulation {
 
   /// Until a bus has something, or the next step of a device or of the mechanics. True: standard input has something.
   bool wait(std::int64_t now_ns) {
-    std::int64_t next_ns = now_ns + std::llround(1e9 * kEmulatedStep_s);
+    std::int64_t next_ns = INT64_MAX;
     wait_on_.assign(1,
                     {.fd = lines_.is_open() ? STDIN_FILENO : -1, .events = POLLIN, .revents = 0});
-    for (const auto& part : parts_) next_ns = std::min(next_ns, part->next_ns(wait_on_));
+    for (const auto& part : parts_) next_ns = std::min(next_ns, part->next_ns(now_ns, wait_on_));
     const std::int64_t left_ns = std::max<std::int64_t>(0, next_ns - monotonic_ns());
     const timespec timeout{.tv_sec = 0, .tv_nsec = static_cast<long>(left_ns)};
     return ::ppoll(wait_on_.data(), wait_on_.size(), &timeout, nullptr) > 0 &&

@@ -21,6 +21,8 @@ namespace {
 
 using sim::can::Drive;
 
+/// The mechanics move in such steps.
+constexpr double kCanStep_s = 250e-6;
 constexpr std::array kCanFaults{"reset", "fail", "mute", "speak"};
 
 struct CanWire {
@@ -115,8 +117,8 @@ class EmulatedCan final : public EmulatedPart {
     return {};
   }
 
-  std::int64_t next_ns(std::vector<pollfd>& wait_on) const override {
-    std::int64_t next_ns = INT64_MAX;
+  std::int64_t next_ns(std::int64_t now_ns, std::vector<pollfd>& wait_on) const override {
+    std::int64_t next_ns = wires_.empty() ? INT64_MAX : now_ns + std::llround(1e9 * kCanStep_s);
     for (const auto& [name, wire] : wires_) {
       next_ns = std::min(next_ns, wire.bus->next_ns());
       wait_on.push_back({.fd = wire.socket.get(), .events = POLLIN, .revents = 0});
@@ -163,8 +165,7 @@ class EmulatedCan final : public EmulatedPart {
       joints.push_back(
           sim::turning(*owned_.back(), turns_per_unit, -turns_per_unit * truth.axes[i].zero_m));
     }
-    devices_.push_back(
-        std::make_unique<sim::EmulatedDevice>(truth, std::move(joints), kEmulatedStep_s));
+    devices_.push_back(std::make_unique<sim::EmulatedDevice>(truth, std::move(joints), kCanStep_s));
     return devices_.back()->start();
   }
 

@@ -16,9 +16,6 @@
 
 namespace hapticd::daemon {
 
-/// The mechanics move in such steps.
-inline constexpr double kEmulatedStep_s = 250e-6;
-
 struct Fault {
   std::string kind{}, name{};
   std::int64_t at_ns = 0;           ///< since the start
@@ -46,8 +43,8 @@ class EmulatedPart {
   /// `name` is one of names(), `kind` one of fault_kinds().
   virtual void befall(const Fault& fault, std::int64_t now_ns) = 0;
   virtual Result<void> advance(std::int64_t now_ns) = 0;
-  /// When something happens without news from the host; adds what to wait on.
-  virtual std::int64_t next_ns(std::vector<pollfd>& wait_on) const = 0;
+  /// When something happens after `now_ns` without news from the host; adds what to wait on.
+  virtual std::int64_t next_ns(std::int64_t now_ns, std::vector<pollfd>& wait_on) const = 0;
   /// Adds what it did.
   virtual void add_to(Json& answer) const = 0;
   virtual std::string text() const = 0;

@@ -14,6 +14,8 @@
 namespace hapticd::daemon {
 namespace {
 
+/// The mechanics move in such steps: a frame, in which a torque comes once.
+constexpr double kUsbStep_s = 1e-3;
 constexpr std::array kUsbFaults{"unplug", "plug",  "reset", "hang",
                                 "mute",   "speak", "stall", "mark"};
 constexpr std::int64_t kHang_ns = 200'000'000;
@@ -38,7 +40,7 @@ class UsbStandIn {
   }
 
   Result<void> start(const sim::DeviceOptions& truth, bool uhid) {
-    mechanics_ = std::make_unique<sim::EmulatedDevice>(truth, made_.joints, kEmulatedStep_s);
+    mechanics_ = std::make_unique<sim::EmulatedDevice>(truth, made_.joints, kUsbStep_s);
     if (auto started = mechanics_->start(); !started) return started;
     if (!uhid) {
       plug_ = plug_by_usbip(wire_);
@@ -182,8 +184,8 @@ class EmulatedUsb final : public EmulatedPart {
       if (auto advanced = device->advance(now_ns); !advanced) return advanced;
     return {};
   }
-  std::int64_t next_ns(std::vector<pollfd>& wait_on) const override {
-    std::int64_t next_ns = INT64_MAX;
+  std::int64_t next_ns(std::int64_t now_ns, std::vector<pollfd>& wait_on) const override {
+    std::int64_t next_ns = devices_.empty() ? INT64_MAX : now_ns + std::llround(1e9 * kUsbStep_s);
     for (const auto& device : devices_) next_ns = std::min(next_ns, device->next_ns(wait_on));
     return next_ns;
   }

@@ -120,7 +120,9 @@ void add_bus_verbs(CommandLine& line) {
   CLI::App* devices =
       add_verb(line, "devices", "which devices are there, and why one cannot be used",
                [&line] { return daemon::run_devices(line.devices, line.json); });
-  devices->add_option("--interface", line.devices.interface, "this CAN interface alone (default: all, and USB)")
+  devices
+      ->add_option("--interface", line.devices.interface,
+                   "this CAN interface alone (default: all, and USB)")
       ->type_name("NAME");
   devices
       ->add_option("--ask", line.devices.ask,

@@ -93,11 +93,13 @@ void add_limits(const Summary& s, Table& table) {
 std::string traffic_words(const TrafficSummary& bus) {
   if (!bus.comes_and_goes)
     return fmt::format(
-        "{} samples late, {} frames not sent, {} lost on the way here, {} commands of others", bus.late,
-        bus.not_sent, bus.lost, bus.foreign);
+        "{} samples late, {} frames not sent, {} lost on the way here, {} commands of others",
+        bus.late, bus.not_sent, bus.lost, bus.foreign);
   return fmt::format(
-      "plugged in and set up {} times, round trip {:.2f} ms then, commands took at most {:.2f} ms on "
-      "their way out; {} samples malformed, {} skipped, {} lost, {} commands replaced by newer ones",
+      "plugged in and set up {} times, round trip {:.2f} ms then, commands took at most {:.2f} ms "
+      "on "
+      "their way out; {} samples malformed, {} skipped, {} lost, {} commands replaced by newer "
+      "ones",
       bus.connections, 1e3 * bus.round_trip_s, 1e3 * bus.worst_send_s, bus.malformed, bus.late,
       bus.lost, bus.not_sent);
 }

@@ -36,12 +36,9 @@ Json limits_json(const Summary& s) {
 Json traffic_json(const std::optional<TrafficSummary>& bus) {
   if (!bus) return nullptr;
   if (bus->comes_and_goes)
-    return {{"connections", bus->connections},
-            {"round_trip_s", bus->round_trip_s},
-            {"worst_send_s", bus->worst_send_s},
-            {"samples_malformed", bus->malformed},
-            {"samples_skipped", bus->late},
-            {"samples_lost", bus->lost},
+    return {{"connections", bus->connections},   {"round_trip_s", bus->round_trip_s},
+            {"worst_send_s", bus->worst_send_s}, {"samples_malformed", bus->malformed},
+            {"samples_skipped", bus->late},      {"samples_lost", bus->lost},
             {"commands_replaced", bus->not_sent}};
   return {{"samples_late", bus->late},
           {"frames_not_sent", bus->not_sent},

@@ -50,7 +50,7 @@ struct Traffic {
   std::atomic<std::uint64_t> not_sent{0};  ///< frames that the kernel did not take
   std::atomic<std::uint64_t> lost{0};     ///< at least so many were dropped by it on their way here
   std::atomic<std::uint64_t> foreign{0};  ///< commands of others
-  std::atomic<std::uint64_t> malformed{0};    ///< what no sound device sends
+  std::atomic<std::uint64_t> malformed{0};  ///< what no sound device sends
   // Of a device that may come and go:
   bool comes_and_goes = false;
   std::atomic<std::uint64_t> connections{0};   ///< how often it was set up

@@ -10,7 +10,7 @@ enum class Freshness : std::uint8_t {
   missing,   ///< no value at all this tick: `raw` is not to be read
   repeated,  ///< the device gave an old value again
   fresh,     ///< measured for this tick (not older than DeviceInfo::worst_sample_age_s)
-  first,     ///< fresh, and the first since the device came: it may count from elsewhere than before
+  first,  ///< fresh, and the first since the device came: it may count from elsewhere than before
 };
 
 /// One axis as the device reports it, in the device's own unit. Trivially copyable.

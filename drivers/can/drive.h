@@ -13,10 +13,10 @@
 
 #include "control/core/result.h"
 #include "drivers/can/conversation.h"
-#include "drivers/fault_text.h"
 #include "drivers/can/frame.h"
 #include "drivers/can/options.h"
 #include "drivers/can/socket.h"
+#include "drivers/fault_text.h"
 
 namespace hapticd::can {
 

@@ -24,7 +24,8 @@ tl::unexpected<NotOpened> refuse(ExitCode code, std::string text) {
   return tl::unexpected(NotOpened{false, Error{std::move(text), code}});
 }
 tl::unexpected<NotOpened> unplugged() {
-  return tl::unexpected(NotOpened{true, Error{"unplugged while it was set up", ExitCode::unavailable}});
+  return tl::unexpected(
+      NotOpened{true, Error{"unplugged while it was set up", ExitCode::unavailable}});
 }
 
 std::string report_name(std::optional<std::uint8_t> id) {
@@ -99,8 +100,9 @@ Opened<bool> HidReport::compare() {
     return refuse(ExitCode::unavailable,
                   "its report descriptor cannot be understood: " + descriptor.error().text);
   const usb::ReportOptions& report = options_.report;
-  for (const std::string& text : {misfit(*descriptor, report.in, ReportKind::input, "report.in"),
-                                  misfit(*descriptor, report.out, ReportKind::output, "report.out")})
+  for (const std::string& text :
+       {misfit(*descriptor, report.in, ReportKind::input, "report.in"),
+        misfit(*descriptor, report.out, ReportKind::output, "report.out")})
     if (!text.empty()) return refuse(ExitCode::bad_data, text);
   return true;
 }
@@ -128,17 +130,20 @@ Opened<bool> HidReport::measure_reports(usb::Host& host) {
     last_ns = arrival.stamp_ns;
   }
   if (static_cast<int>(between_ns.size()) < kMeasured)
-    return refuse(ExitCode::unavailable,
-                  "it sent " + std::to_string(between_ns.size()) + " reports as report.in describes "
-                  "them in " + ms(std::max(0.2, 2 * options_.silence_s)) + "; expected one in every "
-                  "period of the loop");
+    return refuse(ExitCode::unavailable, "it sent " + std::to_string(between_ns.size()) +
+                                             " reports as report.in describes "
+                                             "them in " +
+                                             ms(std::max(0.2, 2 * options_.silence_s)) +
+                                             "; expected one in every "
+                                             "period of the loop");
   const double every_s = median_s(between_ns);
   const double most_s = options_.worst_sample_age_s - options_.arrival_age_s;
   if (every_s <= most_s) return true;
-  return refuse(ExitCode::unavailable,
-                "it reports every " + ms(every_s) + " (median); with usb.max_age_s and "
-                "usb.arrival_age_s as they are it may take " + ms(most_s) +
-                    " at most: raise usb.max_age_s, and latency_s with it");
+  return refuse(ExitCode::unavailable, "it reports every " + ms(every_s) +
+                                           " (median); with usb.max_age_s and "
+                                           "usb.arrival_age_s as they are it may take " +
+                                           ms(most_s) +
+                                           " at most: raise usb.max_age_s, and latency_s with it");
 }
 
 Opened<bool> HidReport::measure_sending(usb::Host& host) {
@@ -148,17 +153,20 @@ Opened<bool> HidReport::measure_sending(usb::Host& host) {
     if (status == Status::ok) status = found_.port->flush(host.now_ns() + ns(0.1));
     if (status == Status::gone) return unplugged();
     if (status != Status::ok)
-      return refuse(ExitCode::unavailable,
-                    "it takes no report of " + std::to_string(options_.report.out.report_bytes) +
-                        " bytes as report.out describes it");
+      return refuse(ExitCode::unavailable, "it takes no report of " +
+                                               std::to_string(options_.report.out.report_bytes) +
+                                               " bytes as report.out describes it");
     took_ns.push_back(found_.port->outgoing().last_took_ns);
   }
   round_trip_s_ = median_s(took_ns);
-  if (round_trip_s_ <= options_.send_s) return true;
-  return refuse(ExitCode::unavailable,
-                "a report takes " + ms(round_trip_s_) + " on its way out (median), the config "
-                "assumes at most " + ms(options_.send_s) + ": raise usb.send_s, and latency_s with "
-                "it; or try usb.transport: libusb");
+  // A command may have to wait for the one that is on its way.
+  if (2 * round_trip_s_ <= options_.send_s) return true;
+  return refuse(ExitCode::unavailable, "a report takes " + ms(round_trip_s_) +
+                                           " on its way out (median) and may wait for "
+                                           "another; the config assumes at most " +
+                                           ms(options_.send_s) +
+                                           " for both: raise usb.send_s, and latency_s with "
+                                           "it; or try usb.transport: libusb");
 }
 
 // -- exchange
@@ -194,8 +202,8 @@ void HidReport::copy(const Reading& from, usb::Reading& to) const {
 Encoded HidReport::encoded(const usb::Command& command) {
   ++heartbeat_;
   if (command.armed) {
-    const auto report = encode(options_.report.out,
-                               {command.effort.data(), options_.axes.size()}, heartbeat_);
+    const auto report =
+        encode(options_.report.out, {command.effort.data(), options_.axes.size()}, heartbeat_);
     if (report) return *report;
   }
   return safe_report(options_.report.out, heartbeat_);
@@ -206,9 +214,10 @@ Status HidReport::tell(const usb::Command& command, std::int64_t) {
   return found_.port->send(encoded(command).report());
 }
 
-void HidReport::close(usb::Host&, std::int64_t until_ns) noexcept {
-  if (found_.port && found_.port->send(encoded({}).report()) == Status::ok)
-    (void)found_.port->flush(until_ns);
+void HidReport::close(usb::Host& host, std::int64_t until_ns) noexcept {
+  if (found_.port)
+    usb::send_last(host, *found_.port, until_ns,
+                   [&] { return found_.port->send(encoded({}).report()); });
   found_ = {};
   armed_ = false;
 }

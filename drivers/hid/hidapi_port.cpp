@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <hidapi/hidapi.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 #include "drivers/hid/superseding.h"
 #include "drivers/usb/choose.h"
+#include "drivers/usb/last_look.h"
 #include "drivers/usb/node_access.h"
 #include "drivers/usb/sysfs_file.h"
 
@@ -89,6 +91,7 @@ class HidapiPort final : public usb::HidPort {
   usb::Waker& waker_;
   std::vector<std::uint8_t> read_, written_;
   usb::ArrivalQueue queue_;
+  usb::LastLook last_look_{};
   usb::Outgoing outgoing_{};
 };
 
@@ -98,14 +101,18 @@ bool HidapiPort::read(int timeout_ms) noexcept {
   const int got = hid_read_timeout(device_.get(), read_.data(), read_.size(), timeout_ms);
   if (got < 0) gone_ = errno != EINTR;
   if (got <= 0) return false;
-  queue_.push(std::span(read_).first(static_cast<std::size_t>(got)), usb::monotonic_ns());
+  queue_.push(std::span(read_).first(static_cast<std::size_t>(got)),
+              last_look_.stamp(usb::monotonic_ns()));
   return true;
 }
 
 /// As many as the kernel keeps: a device that sends without end does not hold this thread.
 void HidapiPort::read_all() noexcept {
-  for (std::size_t i = 0; i < usb::ArrivalQueue::kMost && !gone_; ++i)
-    if (!read(0)) return;
+  for (std::size_t i = 0; i < usb::ArrivalQueue::kMost && !gone_; ++i) {
+    if (read(0)) continue;
+    last_look_.looked(usb::monotonic_ns());
+    return;
+  }
 }
 
 Arrival HidapiPort::receive(std::int64_t until_ns) {
@@ -122,7 +129,7 @@ Arrival HidapiPort::receive(std::int64_t until_ns) {
 void HidapiPort::wait(std::int64_t until_ns) noexcept {
   if (descriptor_ >= 0) {
     std::array both{pollfd{.fd = descriptor_, .events = POLLIN, .revents = 0}, waker_.descriptor()};
-    usb::wait_for(both, until_ns);
+    usb::wait_for(both, std::min(until_ns, usb::monotonic_ns() + usb::LastLook::kEvery_ns));
     return;
   }
   if (until_ns - usb::monotonic_ns() >= kMillisecond_ns) {
@@ -193,6 +200,16 @@ int descriptor_of(const std::string& node) {
   return fitting == 1 ? found : -1;
 }
 
+namespace {
+
+/// hidraw lets any number of programs write: of those that lock it first there is one.
+bool lock(const std::string& node) {
+  const int descriptor = descriptor_of(node);
+  return descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+}
+
+}  // namespace
+
 usb::Opened<usb::Found<usb::HidPort>> open_hidapi(const usb::Selection& selection,
                                                   const usb::Roots& roots, usb::Waker& waker) {
   const auto node = usb::choose_hid_node(selection, roots);
@@ -206,6 +223,9 @@ usb::Opened<usb::Found<usb::HidPort>> open_hidapi(const usb::Selection& selectio
   HidPointer device = open_node(node->node, error);
   if (device == nullptr)
     return usb::refused(ExitCode::unavailable, what + node->node + " cannot be opened: " + error);
+  if (!lock(node->node))
+    return usb::refused(ExitCode::try_again,
+                        what + node->node + " is in use by another program; stop that first");
   if (!is_still(*node, roots))
     return tl::unexpected(usb::NotOpened{
         .absent = true,

@@ -152,7 +152,10 @@ Heard OpenFfboard::take(std::span<const std::uint8_t> bytes, std::int64_t stamp_
 Heard OpenFfboard::take_gamepad(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns) {
   const Layout& layout = board_.layout;
   const hid::Reading gamepad = decode(layout.gamepad, bytes);
-  if (gamepad.received != Received::ok) return Heard::malformed;
+  if (gamepad.received != Received::ok) {
+    position_ns_ = 0;  // it said something else than before, and nobody knows what
+    return Heard::malformed;
+  }
   for (std::size_t i = 0; i < layout.axes; ++i)
     position_.counts[i] = static_cast<double>(gamepad.raw[i]);
   if (layout.buttons) position_.digital = static_cast<std::uint32_t>(gamepad.raw[layout.axes]);

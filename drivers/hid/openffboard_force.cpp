@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hapticd::hid::openffboard {
 namespace {
@@ -169,6 +170,8 @@ Status Force::follow(usb::Port& port, std::size_t axis, std::int16_t magnitude,
 
 /// Older firmware may not know the question; it tells its state after Set Effect.
 Status Force::ask(usb::Port& port, std::int64_t now_ns) {
+  // Answers that have not come by now never will.
+  if (now_ns - asked_ns_ >= kAskAlways_ns) unanswered_ = outdated_ = 0;
   asked_ns_ = now_ns;
   asked_last_ = true;
   ask_by_effect_ = phase_ == Phase::running && !enabled_ && !was_on_ && !ask_by_effect_;
@@ -219,8 +222,10 @@ std::optional<std::size_t> Force::due_magnitude(const usb::Command& command,
 // -- the way out
 
 void Force::end(usb::Port& port, usb::Host& host, std::int64_t until_ns) {
+  bool first = true;
   const auto tell = [&](std::span<const std::uint8_t> report) {
-    if (port.send(report) == Status::ok) (void)port.flush(std::max(until_ns, host.now_ns()));
+    if (!std::exchange(first, false) && host.now_ns() >= until_ns) return;
+    usb::send_last(host, port, until_ns, [&] { return port.send(report); });
   };
   for (std::size_t i = 0; i < board_.layout.axes; ++i)
     if (const auto zero = encode_magnitude(board_.effects[i], 0)) tell(zero->report);

@@ -12,10 +12,7 @@ namespace hapticd::hid::openffboard {
 class Outbox {
  public:
   /// Nothing waits: what is sent now replaces nothing.
-  bool is_free(const usb::Port& port) const noexcept {
-    const std::int64_t since_ns = port.outgoing().since_ns;
-    return since_ns == 0 || since_ns != behind_ns_;
-  }
+  bool is_free(const usb::Port& port) const noexcept { return !port.outgoing().waits; }
   /// Of what waits: the axis whose magnitude it is; nothing: it must not be replaced, or nothing waits.
   std::optional<std::size_t> waiting(const usb::Port& port) const noexcept {
     return is_free(port) ? std::nullopt : axis_;
@@ -23,17 +20,12 @@ class Outbox {
   /// Precondition: is_free(), or `axis` is the one that waits.
   usb::Status send(usb::Port& port, std::span<const std::uint8_t> report,
                    std::optional<std::size_t> axis = {}) {
-    const std::int64_t since_ns = port.outgoing().since_ns;
     const usb::Status status = port.send(report);
-    if (status != usb::Status::ok) return status;
-    behind_ns_ = since_ns;
-    axis_ = axis;
+    if (status == usb::Status::ok) axis_ = axis;
     return status;
   }
 
  private:
-  std::int64_t behind_ns_ =
-      0;  ///< when the transfer began that the last report waits for; 0: for none
   std::optional<std::size_t> axis_{};
 };
 

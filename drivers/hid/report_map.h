@@ -53,7 +53,7 @@ enum class Fault : std::uint8_t {
   modulus,      ///< less than 2, more than the number can count, more than 32 bits, or of a float
   limits,       ///< not in order, or NaN
   no_zero,      ///< value 0 is beyond the limits or the number: there is no way to say "no force"
-  safe_report,  ///< another length or id than the report
+  safe_report,  ///< another length or id than the report, or more than a step of an effort
 };
 struct Problem {
   Fault fault = Fault::none;

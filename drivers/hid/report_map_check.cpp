@@ -109,6 +109,22 @@ Problem zero_problem(const OutputMap& map) noexcept {
   return {Fault::no_zero, static_cast<std::size_t>(std::countr_zero(encoded->saturated))};
 }
 
+/// Does the safe report ask for a force, more than a step of it?
+bool safe_pushes(const OutputMap& map) noexcept {
+  if (map.safe.empty()) return false;
+  InputMap same{.report_id = map.report_id, .report_bytes = map.report_bytes};
+  for (const OutputField& field : map.fields)
+    same.fields.push_back({.place = field.place, .scale = field.scale, .offset = field.offset});
+  const Reading safe = decode(same, map.safe);
+  if (safe.received != Received::ok) return true;
+  for (std::size_t i = 0; i < map.fields.size(); ++i) {
+    const OutputField& field = map.fields[i];
+    const double most = field.place.is_float ? 0 : std::abs(field.scale);
+    if (!(std::abs(safe.value[i]) <= most)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string_view words(Fault fault) noexcept {
@@ -139,7 +155,7 @@ std::string_view words(Fault fault) noexcept {
     case Fault::no_zero:
       return "0 cannot be sent";
     case Fault::safe_report:
-      return "the safe report has another length or id than the report";
+      return "the safe report has another length or id than the report, or asks for an effort";
   }
   return {};
 }
@@ -160,6 +176,7 @@ Problem check(const OutputMap& map) noexcept {
   if (const Problem problem = fields_problem(map, taken); problem.fault != Fault::none)
     return problem;
   if (const Fault fault = rest_fault(map, taken); fault != Fault::none) return {fault, kMostFields};
+  if (safe_pushes(map)) return {Fault::safe_report, kMostFields};
   return zero_problem(map);
 }
 

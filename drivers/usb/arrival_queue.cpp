@@ -31,7 +31,9 @@ ArrivalQueue::Slot& ArrivalQueue::slot_for(std::span<const std::uint8_t> bytes) 
   }
   if (waiting_ == kMost) {
     ++skipped_;
-    return *oldest();
+    Slot& dropped = *oldest();
+    dropped.order = 0;
+    return dropped;
   }
   ++waiting_;
   return *std::ranges::find_if(
@@ -41,7 +43,8 @@ ArrivalQueue::Slot& ArrivalQueue::slot_for(std::span<const std::uint8_t> bytes) 
 void ArrivalQueue::push(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns) noexcept {
   if (bytes.empty()) return;
   Slot& slot = slot_for(bytes);
-  slot.order = ++last_;
+  // A newer report takes the place of the older one: what came between is not handed out before it.
+  if (slot.order == 0) slot.order = ++last_;
   slot.size = std::min(bytes.size(), slot.bytes.size());
   slot.stamp_ns = stamp_ns;
   std::copy_n(bytes.begin(), slot.size, slot.bytes.begin());

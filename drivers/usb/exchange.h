@@ -16,7 +16,9 @@ struct Exchange {
   rt::Latest<Command> command;  ///< the servo thread stores
   /// Which connection is up, counted from 1; 0: none is. A reading or a command of another one is not to be used.
   std::atomic<std::uint32_t> link{0};
-  drivers::FaultText lost;   ///< why the last connection ended, or the device failed; before `link` or the reading tells it
+  std::uint32_t connections = 0;  ///< so many there were: of the device's thread, over all of them
+  drivers::FaultText
+      lost;  ///< why the last connection ended, or the device failed; before `link` or the reading tells it
   drivers::FaultText doing;  ///< what the device is about while no connection is up
   drivers::Traffic traffic;
 };

@@ -10,9 +10,9 @@ namespace {
 using falcon::Upload;
 
 constexpr std::int64_t kAnswer_ns = 20'000'000;  ///< a packet's answer takes 1 to 2 ms
-constexpr int kProbes = 10;                      ///< packets without an answer: there is no firmware
-constexpr int kMeasured = 50;                    ///< exchanges, of which
-constexpr int kLeastAnswered = 45;               ///< so many must have an answer
+constexpr int kProbes = 10;         ///< packets without an answer: there is no firmware
+constexpr int kMeasured = 50;       ///< exchanges, of which
+constexpr int kLeastAnswered = 45;  ///< so many must have an answer
 
 tl::unexpected<NotOpened> refuse(ExitCode code, std::string text) {
   return tl::unexpected(NotOpened{false, Error{std::move(text), code}});
@@ -94,9 +94,10 @@ Opened<bool> Falcon::set_up(Host& host, Words& words) {
 
 Opened<bool> Falcon::load(Host& host, Words& words) {
   if (!firmware_)
-    return refuse(ExitCode::unavailable,
-                  "the Falcon has no firmware, and hapticd has none of its own (its licence forbids "
-                  "that): give falcon.firmware, the file that came with the device");
+    return refuse(
+        ExitCode::unavailable,
+        "the Falcon has no firmware, and hapticd has none of its own (its licence forbids "
+        "that): give falcon.firmware, the file that came with the device");
   Upload came = Upload::no_greeting;
   for (int i = 0; i < options_.falcon.upload_tries && !words.abandoned(); ++i) {
     came = falcon::upload(*found_.port, host, words, *firmware_);
@@ -107,9 +108,9 @@ Opened<bool> Falcon::load(Host& host, Words& words) {
       return true;
   }
   return refuse(ExitCode::unavailable,
-                "firmware " + options_.falcon.firmware + " (SHA-256 " + firmware_->sha256 +
-                    ") could not be loaded in " + std::to_string(options_.falcon.upload_tries) +
-                    " tries: " + words_of(came));
+                std::string("firmware could not be loaded: ") + words_of(came) + " (" +
+                    std::to_string(options_.falcon.upload_tries) + " tries, " +
+                    options_.falcon.firmware + ", SHA-256 " + firmware_->sha256 + ")");
 }
 
 bool Falcon::answers(Host& host) {
@@ -149,12 +150,12 @@ Opened<bool> Falcon::measure(Host& host, Words& words) {
   std::ranges::sort(took_ns);
   round_trip_s_ = 1e-9 * static_cast<double>(took_ns.back());
   const double median_s = 1e-9 * static_cast<double>(took_ns[took_ns.size() / 2]);
-  const double assumed_s = options_.send_s + options_.arrival_age_s;
+  const double assumed_s = options_.send_s / 2 + options_.arrival_age_s;
   if (median_s <= assumed_s) return true;
   return refuse(ExitCode::unavailable, "a packet and its answer take " + ms(median_s) +
                                            " (median), the config assumes at most " +
                                            ms(assumed_s) +
-                                           ", usb.send_s + usb.arrival_age_s: raise these, and "
+                                           ", usb.send_s / 2 + usb.arrival_age_s: raise these, and "
                                            "latency_s with them; or use another USB port");
 }
 
@@ -192,8 +193,8 @@ Status Falcon::send(const Command& command) {
   return encoded ? found_.port->send(encoded->packet) : Status::failed;
 }
 
-void Falcon::close(Host&, std::int64_t until_ns) noexcept {
-  if (found_.port && send({}) == Status::ok) (void)found_.port->flush(until_ns);
+void Falcon::close(Host& host, std::int64_t until_ns) noexcept {
+  if (found_.port) send_last(host, *found_.port, until_ns, [&] { return send({}); });
   found_ = {};
   armed_ = false;
 }

@@ -142,9 +142,8 @@ class Line {
 
 bool greet(Line& line) {
   for (int i = 0; i < kGreetings && !line.gone(); ++i) {
-    const Answer answer = line.ask(kGreeting, kGreeting_ns, [](const auto& received) {
-      return greeting_answer(received);
-    });
+    const Answer answer = line.ask(kGreeting, kGreeting_ns,
+                                   [](const auto& received) { return greeting_answer(received); });
     if (answer == Answer::right) return true;
   }
   return false;
@@ -158,8 +157,7 @@ bool comes_back(Line& line, std::span<const std::uint8_t> bytes) {
 Upload send_all(Line& line, Words& words, const Firmware& firmware) {
   const std::size_t chunks = (firmware.bytes.size() + kChunkBytes - 1) / kChunkBytes;
   for (std::size_t i = 0; i < chunks; ++i) {
-    if (i % 16 == 0)
-      words.say("loads firmware, " + std::to_string(100 * i / chunks) + " %");
+    if (i % 16 == 0) words.say("loads firmware, " + std::to_string(100 * i / chunks) + " %");
     if (words.abandoned()) return Upload::wrong_echo;
     if (!comes_back(line, chunk(firmware.bytes, i)))
       return line.gone() ? Upload::unplugged : Upload::wrong_echo;

@@ -1,5 +1,6 @@
 #include "drivers/usb/libusb_exchange.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hapticd::usb {
@@ -31,27 +32,32 @@ LibusbExchange::~LibusbExchange() {
   session_->close();
 }
 
+void LibusbExchange::pump() noexcept {
+  session_->pump();
+  reads_.looked();
+}
+
 Arrival LibusbExchange::receive(std::int64_t until_ns) noexcept {
   for (;;) {
-    session_->pump();
+    pump();
     if (const Arrival arrival = queue_.take(); arrival.status == Status::ok) return arrival;
     if (const Status failure = reads_.failure(); failure == Status::gone || reads_.idle()) {
       reads_.begin();
       if (failure != Status::ok) return {.status = failure};
     }
     if (session_->waker().take() || monotonic_ns() >= until_ns) return {};
-    session_->wait(until_ns, true);
+    session_->wait(std::min(until_ns, monotonic_ns() + LastLook::kEvery_ns), true);
   }
 }
 
 Status LibusbExchange::send(std::span<const std::uint8_t> bytes) noexcept {
-  session_->pump();
+  pump();
   return writes_.send(bytes);
 }
 
 Status LibusbExchange::flush(std::int64_t until_ns) noexcept {
   for (;;) {
-    session_->pump();
+    pump();
     if (writes_.idle()) return writes_.take_failure();
     if (monotonic_ns() >= until_ns) return Status::nothing;
     session_->wait(until_ns, false);

@@ -29,6 +29,8 @@ class LibusbExchange {
   std::uint64_t skipped() const noexcept { return queue_.skipped(); }
 
  private:
+  void pump() noexcept;
+
   std::unique_ptr<LibusbSession> session_;
   ArrivalQueue queue_;
   Reads reads_;

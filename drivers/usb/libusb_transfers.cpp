@@ -72,7 +72,8 @@ void Reads::completed(Read& read) noexcept {
   --under_way_;
   const auto size = static_cast<std::size_t>(std::max(0, read.transfer->actual_length));
   const Status status = status_of_transfer(read.transfer->status);
-  if (status == Status::ok) queue_.push(std::span(read.bytes).first(size), monotonic_ns());
+  if (status == Status::ok)
+    queue_.push(std::span(read.bytes).first(size), last_look_.stamp(monotonic_ns()));
   if (ending_) return;
   const bool first_failure = failure_ == Status::ok && status != Status::ok;
   failure_ = worse(failure_, status);
@@ -117,6 +118,7 @@ Status Writes::send(std::span<const std::uint8_t> bytes) noexcept {
   if (under_way_) {
     if (waiting_.size != 0) ++outgoing_.replaced;
     waiting_.set(bytes);
+    outgoing_.waits = true;
     return Status::ok;
   }
   const Status before = take_failure();
@@ -167,6 +169,7 @@ void Writes::completed() noexcept {
   if (waiting_.size == 0 || ending_) return;
   const std::size_t size = waiting_.size;
   waiting_.size = 0;
+  outgoing_.waits = false;
   // What waits behind a failure is not sent: whoever is told of it knows better.
   if (failure_ == Status::ok) failure_ = begin(std::span(waiting_.bytes).first(size));
 }

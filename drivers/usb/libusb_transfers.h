@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/usb/arrival_queue.h"
+#include "drivers/usb/last_look.h"
 #include "drivers/usb/libusb_session.h"
 #include "drivers/usb/port.h"
 
@@ -34,6 +35,8 @@ class Reads {
   void begin() noexcept;
   void cancel() noexcept;
   bool idle() const noexcept { return under_way_ == 0; }
+  /// After all that had come was handed over.
+  void looked() noexcept { last_look_.looked(monotonic_ns()); }
   /// What ended a transfer; it stays ended until begin(). ok: nothing did.
   Status failure() const noexcept { return failure_; }
 
@@ -52,6 +55,7 @@ class Reads {
   const Endpoint endpoint_;
   ArrivalQueue& queue_;
   std::vector<Read> reads_;
+  LastLook last_look_{};
   int under_way_ = 0;
   bool ending_ = false;
   Status failure_ = Status::ok;

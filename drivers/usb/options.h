@@ -18,7 +18,7 @@ struct Selection {
   std::string serial{};
   std::string path{};  ///< of the port that it is plugged into, as in sysfs: "1-2.3"
   std::optional<int> interface {};
-  std::optional<std::uint32_t> usage{};  ///< HID: usage page << 16 | usage of a top collection
+  std::optional<std::uint32_t> usage{};     ///< HID: usage page << 16 | usage of a top collection
   Transport transport = Transport::hidapi;  ///< HID
   int reads = 2;                            ///< libusb: IN transfers in flight, 2 to 8
 };
@@ -58,13 +58,13 @@ struct DeviceOptions {
   Kind kind = Kind::falcon;
   Selection selection{};
   double period_s = 1e-3;
-  double arrival_age_s = 1e-3;           ///< of a sample when it arrives, at most
-  double worst_sample_age_s = 2.5e-3;    ///< at collect; an older sample is missing
-  double send_s = 1e-3;                  ///< a command is with the device after so long, at most
-  double drive_delay_s = 1e-4;           ///< and acts after so long
-  double watchdog_s = 0.02;              ///< the loop gave no command for so long: zero force
-  double silence_s = 0.1;                ///< the device said nothing for so long: it is lost
-  int priority = 70;                     ///< SCHED_FIFO of the device's thread, below the loop's
+  double arrival_age_s = 1e-3;         ///< of a sample when it arrives, at most
+  double worst_sample_age_s = 2.5e-3;  ///< at collect; an older sample is missing
+  double send_s = 1e-3;                ///< a command is with the device after so long, at most
+  double drive_delay_s = 1e-4;         ///< and acts after so long
+  double watchdog_s = 0.02;            ///< the loop gave no command for so long: zero force
+  double silence_s = 0.1;              ///< the device said nothing for so long: it is lost
+  int priority = 70;                   ///< SCHED_FIFO of the device's thread, below the loop's
   std::vector<AxisOptions> axes{};
   FalconOptions falcon{};
   ReportOptions report{};

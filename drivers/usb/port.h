@@ -24,9 +24,10 @@ struct Arrival {
 
 /// What goes out. Never a queue: of what waits only the newest goes.
 struct Outgoing {
-  std::uint64_t sent = 0;       ///< completed
-  std::uint64_t replaced = 0;   ///< by newer ones, before they went
-  std::int64_t since_ns = 0;    ///< what is on its way now began then; 0: nothing is
+  std::uint64_t sent = 0;      ///< completed
+  std::uint64_t replaced = 0;  ///< by newer ones, before they went
+  std::int64_t since_ns = 0;   ///< what is on its way now began then; 0: nothing is
+  bool waits = false;          ///< something newer waits behind it
   std::int64_t last_took_ns = 0, worst_took_ns = 0;  ///< from begin to end
 };
 

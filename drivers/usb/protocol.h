@@ -22,8 +22,8 @@ struct Reading {
   std::uint32_t drive_faults = 0;
   std::array<double, kMaxAxesPerDevice> counts{};
   std::uint32_t digital = 0;
-  std::uint8_t homed = 0;  ///< a bit for each axis
-  bool armed = false;      ///< power stage on: it follows forces
+  std::uint8_t homed = 0;      ///< a bit for each axis
+  bool armed = false;          ///< power stage on: it follows forces
   std::uint32_t failures = 0;  ///< how often the device has said that it cannot go on
   std::array<double, 6> analogue{};
 };
@@ -32,8 +32,9 @@ struct Reading {
 struct Command {
   std::array<double, kMaxAxesPerDevice> effort{};  ///< N, N m
   std::int64_t at_ns = 0;
-  std::uint32_t link = 0;  ///< of the readings that it rests on: no force goes to another connection
-  bool armed = false;      ///< power stage on is wanted; without, efforts are 0
+  std::uint32_t link =
+      0;               ///< of the readings that it rests on: no force goes to another connection
+  bool armed = false;  ///< power stage on is wanted; without, efforts are 0
 };
 
 /// What it is, for people: "Novint Falcon" and its serial number.
@@ -90,6 +91,19 @@ class Protocol {
  protected:
   const DeviceOptions& options_;
 };
+
+/// Sends a report without force, again where that failed, or where a failure before it is only told now: until it is out,
+/// the device has gone or the time is over.
+template <class Send>
+void send_last(Host& host, Port& port, std::int64_t until_ns, Send&& send) {
+  constexpr int kTries = 5;
+  for (int i = 0; i < kTries; ++i) {
+    const Status taken = send();
+    const Status out = taken == Status::gone ? taken : port.flush(until_ns);
+    const bool done = taken == Status::ok && out == Status::ok;
+    if (done || out == Status::gone || host.now_ns() >= until_ns) return;
+  }
+}
 
 std::unique_ptr<Protocol> make_protocol(const DeviceOptions& options);
 

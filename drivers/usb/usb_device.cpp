@@ -104,8 +104,8 @@ void UsbDevice::look_at_link() noexcept {
 void UsbDevice::fill(std::span<AxisSample> axes, Aux& aux) noexcept {
   const bool up = exchange_.link.load(std::memory_order_acquire) == link_ && link_ != 0;
   const bool ours = up && reading_.link == link_;
-  const std::int64_t age_ns = host_->now_ns() - reading_.stamp_ns +
-                              std::llround(1e9 * options_.arrival_age_s);
+  const std::int64_t age_ns =
+      host_->now_ns() - reading_.stamp_ns + std::llround(1e9 * options_.arrival_age_s);
   const bool young = ours && age_ns <= std::llround(1e9 * options_.worst_sample_age_s);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     axes[i] = {.raw = reading_.counts[i],

@@ -52,13 +52,13 @@ class UsbDevice final : public drivers::Device {
 
   // the servo thread's
   Reading reading_{};
-  std::uint32_t link_ = 0;     ///< that it has seen; 0: none yet
-  std::uint32_t failures_ = 0; ///< of this connection, that were seen
-  bool begun_ = false;         ///< a sample of this connection was handed on
+  std::uint32_t link_ = 0;      ///< that it has seen; 0: none yet
+  std::uint32_t failures_ = 0;  ///< of this connection, that were seen
+  bool begun_ = false;          ///< a sample of this connection was handed on
   bool arm_wanted_ = false;
   bool armed_ = false;
   bool failed_ = false;
-  bool told_ = false;          ///< a failure, in a tick
+  bool told_ = false;  ///< a failure, in a tick
 };
 
 }  // namespace hapticd::usb

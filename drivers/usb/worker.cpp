@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <string>
 
 namespace hapticd::usb {
 namespace {
@@ -9,6 +11,7 @@ namespace {
 constexpr std::int64_t kFirstRetry_ns = 100'000'000, kLastRetry_ns = 1'000'000'000;
 /// For zero force on the way out: a healthy device takes two frames for it.
 constexpr std::int64_t kWayOut_ns = 20'000'000;
+constexpr std::int64_t kLeastUnsent_ns = 5'000'000;
 
 std::int64_t ns(double seconds) {
   return std::llround(1e9 * seconds);
@@ -45,7 +48,7 @@ void Worker::say(std::string_view text) {
 void Worker::run() {
   std::int64_t retry_ns = kFirstRetry_ns;
   while (!abandoned()) {
-    const auto opened = protocol_.open(host_, *this);
+    const auto opened = open();
     if (opened) {
       connect(*opened);
       came_of_looking(opened);
@@ -62,6 +65,18 @@ void Worker::run() {
   }
 }
 
+/// What is thrown on the way (out of memory) is no reason to end the process, in which other devices are driven.
+Opened<Identity> Worker::open() {
+  try {
+    return protocol_.open(host_, *this);
+  } catch (const std::exception& error) {
+    protocol_.close(host_, host_.now_ns() + kWayOut_ns);
+    return tl::unexpected(NotOpened{
+        false,
+        Error{std::string("it could not be set up: ") + error.what(), ExitCode::unavailable}});
+  }
+}
+
 void Worker::came_of_looking(const Opened<Identity>& opened) {
   if (first() != nullptr) return;
   if (opened)
@@ -74,9 +89,11 @@ void Worker::came_of_looking(const Opened<Identity>& opened) {
 void Worker::connect(const Identity& identity) {
   identity_ = identity;
   const std::int64_t now_ns = host_.now_ns();
-  reading_ = {.link = ++link_};
+  link_ = ++exchange_.connections;
+  reading_ = {.link = link_};
   command_ = {};
   next_tell_ns_ = heard_ns_ = now_ns;
+  said_ = {};
   exchange_.traffic.round_trip_ns.store(ns(protocol_.round_trip_s()), std::memory_order_relaxed);
   exchange_.traffic.connections.store(link_, std::memory_order_relaxed);
   exchange_.link.store(link_, std::memory_order_release);
@@ -84,9 +101,12 @@ void Worker::connect(const Identity& identity) {
 
 void Worker::exchange() {
   while (!abandoned()) {
-    if (!tell_if_due() || !alive()) return;
+    if (!tell_if_due() || !takes_commands()) return;
     const Arrival arrival = protocol_.port()->receive(next_tell_ns_);
-    if (arrival.status == Status::nothing) continue;
+    if (arrival.status == Status::nothing) {
+      if (!speaks()) return;
+      continue;
+    }
     if (arrival.status != Status::ok) {
       lost(arrival.status);
       return;
@@ -103,6 +123,9 @@ bool Worker::tell_if_due() {
   const Command wanted = command_now(now_ns);
   told_ = given;
   next_tell_ns_ = now_ns + ns(protocol_.keep_alive_s());
+  // A force has to be taken back as soon as it is too old.
+  if (wanted.armed)
+    next_tell_ns_ = std::min(next_tell_ns_, wanted.at_ns + ns(options_.watchdog_s) + 1);
   const Status status = protocol_.tell(wanted, now_ns);
   count();
   return status == Status::ok || status == Status::nothing || lost(status);
@@ -129,7 +152,7 @@ bool Worker::hear(const Arrival& arrival) {
       exchange_.reading.store(reading_);
       break;
     case Heard::fault:
-      exchange_.lost.begin().add(options_.name).add(": ").add(protocol_.fault_text()).publish();
+      say_failure(protocol_.fault_text());
       ++reading_.failures;
       exchange_.reading.store(reading_);
       break;
@@ -139,16 +162,28 @@ bool Worker::hear(const Arrival& arrival) {
   return true;
 }
 
-/// It speaks, and takes what it is told. False: it is lost.
-bool Worker::alive() {
+/// Once, however often the device says it: texts are read while the next ones are written.
+void Worker::say_failure(std::string_view what) {
+  if (what.data() == said_.data() && what.size() == said_.size()) return;
+  said_ = what;
+  exchange_.lost.begin().add(options_.name).add(": ").add(what).publish();
+}
+
+/// False: it is lost.
+bool Worker::speaks() {
+  const std::int64_t silent_ns = host_.now_ns() - heard_ns_;
+  if (silent_ns <= ns(options_.silence_s)) return true;
+  return lost("no sample came for", silent_ns / 1'000'000);
+}
+
+/// A transport that waits for each report tells afterwards. False: it is lost.
+bool Worker::takes_commands() {
   constexpr double kUnsent = 5;  // times what a command may take
-  const std::int64_t now_ns = host_.now_ns();
-  const std::int64_t silent_ns = now_ns - heard_ns_;
-  if (silent_ns > ns(options_.silence_s)) return lost("no sample came for", silent_ns / 1'000'000);
-  const std::int64_t since_ns = protocol_.port()->outgoing().since_ns;
-  if (since_ns != 0 && now_ns - since_ns > ns(kUnsent * options_.send_s))
-    return lost("it has not taken a command for", (now_ns - since_ns) / 1'000'000);
-  return true;
+  const Outgoing& outgoing = protocol_.port()->outgoing();
+  const std::int64_t under_way_ns =
+      outgoing.since_ns != 0 ? host_.now_ns() - outgoing.since_ns : outgoing.last_took_ns;
+  if (under_way_ns <= std::max(kLeastUnsent_ns, ns(kUnsent * options_.send_s))) return true;
+  return lost("it has not taken a command for", under_way_ns / 1'000'000);
 }
 
 bool Worker::lost(Status status) {

@@ -40,13 +40,16 @@ class Worker final : private Words {
   void say(std::string_view text) override;
   bool abandoned() const noexcept override { return ending_.load(std::memory_order_relaxed); }
 
+  Opened<Identity> open();
   void came_of_looking(const Opened<Identity>& opened);
   void connect(const Identity& identity);
   void exchange();
   bool tell_if_due();
   Command command_now(std::int64_t now_ns);
   bool hear(const Arrival& arrival);
-  bool alive();
+  void say_failure(std::string_view what);
+  bool speaks();
+  bool takes_commands();
   bool lost(std::string_view why, std::int64_t milliseconds = -1);
   bool lost(Status status);
   void disconnect();
@@ -67,6 +70,7 @@ class Worker final : private Words {
   std::uint64_t told_ = 0;  ///< how many commands the loop had given when one was told last
   std::int64_t next_tell_ns_ = 0;
   std::int64_t heard_ns_ = 0;  ///< when the last sample came
+  std::string_view said_{};    ///< the failure that was told last
 
   // of all connections
   std::uint64_t replaced_before_ = 0, skipped_before_ = 0;

@@ -39,8 +39,9 @@ class Device {
 
   // -- what it is
   virtual Speed speed() const { return Speed::full; }
-  virtual std::vector<std::uint8_t> device_descriptor() const = 0;         ///< 18 bytes
-  virtual std::vector<std::uint8_t> configuration_descriptor() const = 0;  ///< with all that belongs to it
+  virtual std::vector<std::uint8_t> device_descriptor() const = 0;  ///< 18 bytes
+  virtual std::vector<std::uint8_t> configuration_descriptor()
+      const = 0;  ///< with all that belongs to it
   /// As UTF-8; empty: there is none. 1: manufacturer, 2: product, 3: serial.
   virtual const char* text(int index) const = 0;
   /// Of a HID interface; empty: it is none, or has no such one.

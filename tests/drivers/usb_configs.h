@@ -26,20 +26,22 @@ inline constexpr const char* kFalconUsb = "{arrival_age_s: 0.0025, max_age_s: 0.
 inline std::string falcon_text(const std::string& falcon = "{}") {
   std::string axes, truth;
   for (const char* name : {"one", "two", "three"}) {
-    truth += "\n        - {inertia_kgm2: 1.0e-4, damping_Nms_rad: 0.003, position_rad: 0.4174482307}";
+    truth +=
+        "\n        - {inertia_kgm2: 1.0e-4, damping_Nms_rad: 0.003, position_rad: 0.4174482307}";
     axes += std::string("\n      - {name: ") + name +
             ", kind: rotary, encoder: {counts_per_rev: 9880.7, bits: 16, offset_rad: 0.6109}, "
             "actuator: {max_torque_Nm: 0.4}, homing: {by: device}}";
   }
   return std::string("version: 1\ndevices:\n  - name: falcon\n    driver: falcon\n    usb: ") +
-         kFalconUsb + "\n    falcon: " + falcon + "\n    latency_s: 0.006\n    sim:\n      axes:" +
-         truth + R"(
+         kFalconUsb + "\n    falcon: " + falcon +
+         "\n    latency_s: 0.0065\n    sim:\n      axes:" + truth + R"(
       linkage: {tip_kg: 0.1}
       hand: {mass_kg: 0.1, stiffness_N_m: 200, damping_Ns_m: 5, direction: [0, -1, 0],
              script: [{at_s: 0, position_m: 0}, {at_s: 0.3, position_m: 0.02}]}
     kinematics: {delta: {}}
     pose: {position_m: [-0.12, 0, 0], rotation_quaternion: [0.5, 0.5, 0.5, 0.5]}
-    axes:)" + axes + R"(
+    axes:)" +
+         axes + R"(
 scene:
   - plane: {name: floor, normal: [0, 0, 1], offset_m: -0.01, stiffness_N_m: 100}
 stability: {require: none}
@@ -64,7 +66,7 @@ devices:
         bytes: 8
         efforts: [{offset_bits: 0, width_bits: 16, signed: true, scale: 0.001}])" +
          out_keys + R"(
-    latency_s: 0.004
+    latency_s: 0.005
     kinematics: {cartesian: {directions: [x]}}
     sim:
       axes: [{mass_kg: 0.05, damping_Ns_m: 1.37, position_m: 0.002}]
@@ -84,9 +86,9 @@ inline std::string openffboard_text() {
 devices:
   - name: wheel
     driver: openffboard
-    usb: {transport: libusb, max_age_s: 0.006}
+    usb: {transport: libusb}
     openffboard: {full_torque_Nm: 2}
-    latency_s: 0.008
+    latency_s: 0.012
     kinematics: {serial: {joints: [{a_m: 0.1}]}}
     sim:
       axes: [{inertia_kgm2: 0.002, damping_Nms_rad: 0.02, position_rad: 0.02}]
@@ -103,7 +105,8 @@ guard: {max_force_N: 6, max_velocity_rad_s: 20, ramp_s: 0.1}
 }
 
 /// An image of a firmware, in a file that nobody else may write.
-inline std::string firmware_file(const std::vector<std::uint8_t>& image = sim::usb::made_up_firmware()) {
+inline std::string firmware_file(
+    const std::vector<std::uint8_t>& image = sim::usb::made_up_firmware()) {
   const std::string path = testing::TempDir() + "falcon_" + std::to_string(::getpid()) + ".bin";
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(image.data()),
@@ -146,6 +149,8 @@ inline sim::usb::OpenffboardOptions openffboard_electronics() {
   sim::usb::OpenffboardOptions options;
   options.axes = 1;
   options.axis.full_torque_Nm = 2;
+  // Its own spring and damper act whenever hapticd does not hold it; here every torque is to be hapticd's.
+  options.axis.idlespring = options.axis.damper = 0;
   return options;
 }
 

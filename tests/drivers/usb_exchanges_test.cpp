@@ -15,12 +15,14 @@ int exchanges() {
 }
 
 class UsbExchanges : public testing::TestWithParam<UsbCase> {};
-INSTANTIATE_TEST_SUITE_P(All, UsbExchanges, testing::ValuesIn(kUsbCases),
-                         usb_case_name);
+INSTANTIATE_TEST_SUITE_P(All, UsbExchanges, testing::ValuesIn(kUsbCases), usb_case_name);
 
 /// Positions as the mechanics had them: a sample is right if the axis was there within what its age says.
 TEST_P(UsbExchanges, NoWrongPositionIsTakenOfABadWire) {
-  auto rig = usb_rig(GetParam().text(), GetParam().electronics());
+  std::string text = GetParam().text();
+  const std::string guard = "guard: {";
+  text.replace(text.find(guard), guard.size(), guard + "max_stale_ticks: 20, ");
+  auto rig = usb_rig(text, GetParam().electronics());
   ASSERT_TRUE(rig->connect());
   rig->input.enable = true;
   ASSERT_TRUE(rig->until([&] { return rig->enabled(); })) << rig->fault_text();
@@ -38,8 +40,11 @@ TEST_P(UsbExchanges, NoWrongPositionIsTakenOfABadWire) {
     }
     rig->tick();
     if (!rig->enabled()) {  // too many in a row were lost: an operator's case
-      rig->input.enable = rig->input.clear_fault = true;
-      ASSERT_TRUE(rig->until([&] { return rig->enabled(); }, 5000)) << rig->fault_text();
+      const auto clear = [&] {
+        rig->input.enable = rig->input.clear_fault = true;
+        return rig->enabled();
+      };
+      ASSERT_TRUE(rig->until(clear, 5000)) << rig->fault_text();
       truth.assign(axes, {});
       continue;
     }

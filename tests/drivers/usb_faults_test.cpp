@@ -58,8 +58,7 @@ class UsbFaults : public testing::TestWithParam<UsbCase> {
     EXPECT_GT(rig.torque(), 0);
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, UsbFaults, testing::ValuesIn(kUsbCases),
-                         usb_case_name);
+INSTANTIATE_TEST_SUITE_P(All, UsbFaults, testing::ValuesIn(kUsbCases), usb_case_name);
 
 TEST_P(UsbFaults, UnpluggedUnderForceIsAFaultInTheNextTick) {
   const auto rig = pressing();

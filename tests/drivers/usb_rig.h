@@ -109,7 +109,8 @@ struct Endpoints {
 /// A port of the device's thread over the wire, with reads in flight and newest-wins writes.
 class VirtualPort {
  public:
-  VirtualPort(VirtualUsb& usb, const Endpoints& endpoints, int reads) : usb_(usb), ends_(endpoints) {
+  VirtualPort(VirtualUsb& usb, const Endpoints& endpoints, int reads)
+      : usb_(usb), ends_(endpoints) {
     usb_.completed = [this](const sim::usb::Wire::Done& done) { take(done); };
     for (int i = 0; i < reads; ++i) submit_in();
   }
@@ -134,6 +135,7 @@ class VirtualPort {
     if (out_id_ != 0) {
       outgoing_.replaced += waiting_.empty() ? 0 : 1;
       waiting_.assign(bytes.begin(), bytes.end());
+      outgoing_.waits = true;
       return usb::Status::ok;
     }
     begin(bytes);
@@ -188,6 +190,7 @@ class VirtualPort {
     ++outgoing_.sent;
     if (waiting_.empty() || gone_) return;
     const std::vector<std::uint8_t> bytes = std::exchange(waiting_, {});
+    outgoing_.waits = false;
     begin(bytes);
   }
 
@@ -220,8 +223,7 @@ class VirtualBulkPort final : public usb::BulkPort {
 class VirtualHidPort final : public usb::HidPort {
  public:
   VirtualHidPort(VirtualUsb& usb, const Endpoints& ends, int reads)
-      : port_(usb, ends, reads),
-        descriptor_(usb.wire.device().report_descriptor(ends.interface)) {}
+      : port_(usb, ends, reads), descriptor_(usb.wire.device().report_descriptor(ends.interface)) {}
   usb::Arrival receive(std::int64_t until_ns) override { return port_.receive(until_ns); }
   usb::Status send(std::span<const std::uint8_t> bytes) override { return port_.send(bytes); }
   usb::Status flush(std::int64_t until_ns) override { return port_.flush(until_ns); }

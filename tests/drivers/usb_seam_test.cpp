@@ -25,8 +25,7 @@ class UsbSeam : public testing::TestWithParam<UsbCase> {
     return rig;
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, UsbSeam, testing::ValuesIn(kUsbCases),
-                         usb_case_name);
+INSTANTIATE_TEST_SUITE_P(All, UsbSeam, testing::ValuesIn(kUsbCases), usb_case_name);
 
 TEST_P(UsbSeam, WallHoldsTheHand) {
   const auto rig = pressing();

@@ -9,9 +9,9 @@ namespace {
 using control::Mode;
 
 /// A Falcon that has lost its firmware, and what is wrong with it.
-std::unique_ptr<UsbRig> empty_falcon(const std::function<void(sim::usb::FalconBoardOptions&)>& wrong,
-                                     const std::string& falcon = "{firmware: " + firmware_file() +
-                                                                 "}") {
+std::unique_ptr<UsbRig> empty_falcon(
+    const std::function<void(sim::usb::FalconBoardOptions&)>& wrong,
+    const std::string& falcon = "{firmware: " + firmware_file() + "}") {
   auto options = falcon_electronics(false);
   wrong(options.board);
   return usb_rig(falcon_text(falcon), std::make_unique<sim::usb::Falcon>(options));
@@ -121,7 +121,8 @@ TEST(FalconSetUp, RoundTripIsMeasuredAndHeldAgainstTheConfig) {
   EXPECT_LT(traffic.round_trip_ns.load(), 5'000'000);
   std::string text = falcon_text();
   const std::string ages = kFalconUsb;
-  text.replace(text.find(ages), ages.size(), "{arrival_age_s: 0.0001, max_age_s: 0.003, send_s: 0.0005}");
+  text.replace(text.find(ages), ages.size(),
+               "{arrival_age_s: 0.0001, max_age_s: 0.003, send_s: 0.0005}");
   rig = usb_rig(text, std::make_unique<sim::usb::Falcon>(falcon_electronics()));
   const auto info = rig->connect();
   ASSERT_FALSE(info);
@@ -160,6 +161,22 @@ TEST(ReportSetUp, SequenceThatBeginsAnewIsANewConnection) {
   rig->ticks(6);
   EXPECT_TRUE(rig->faulted());
   EXPECT_EQ(rig->torque(), 0);
+}
+
+TEST(ReportSetUp, LoopThatHangsLeavesNoForceHoweverSeldomTheBoardIsTold) {
+  auto rig =
+      usb_rig(report_text("\n        every_s: 0.9"), std::make_unique<sim::usb::ReportBoard>([] {
+                auto options = report_electronics();
+                options.watchdog_s = 0;
+                return options;
+              }()));
+  ASSERT_TRUE(rig->connect());
+  rig->input.enable = true;
+  ASSERT_TRUE(rig->until([&] { return rig->enabled(); }));
+  rig->ticks(500);
+  ASSERT_GT(rig->torque(), 0);
+  rig->stand_still(25'000'000);
+  EXPECT_EQ(rig->torque(), 0) << "usb.watchdog_s is 20 ms";
 }
 
 }  // namespace

@@ -136,13 +136,15 @@ TEST_F(Bulk, WhatArrivesDuringARequestIsKept) {
 
 TEST_F(Bulk, AWakeEndsTheWaitThatIsOrTheNextOne) {
   open();
+  const std::int64_t much_later_ns = later();
   host_->wake();
   host_->wake();
-  EXPECT_EQ(port_->receive(later()).status, Status::nothing);
+  EXPECT_EQ(port_->receive(much_later_ns).status, Status::nothing);
   host_->wake();
   usbfs_.say({7});
   EXPECT_EQ(received(), Bytes{7});
-  EXPECT_EQ(port_->receive(later()).status, Status::nothing);
+  EXPECT_EQ(port_->receive(much_later_ns).status, Status::nothing);
+  EXPECT_LT(host_->now_ns(), much_later_ns) << "it was not the time that ended a wait";
 }
 
 TEST_F(Bulk, AStallIsToldOnceAndReadingGoesOnAfterTheHaltIsCleared) {

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it, then once more for
-# guest/beside/*.sh. Prints one line a check.
+# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it, then once more for each of
+# guest/usb/ and guest/beside/. Prints one line a check.
 # Exit: 0 all passed, 1 not so, 64 usage, 69 the kernel cannot be downloaded, 77 skipped: something is not installed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 usage() {
   cat << 'END'
-usage: tests/vm/run.sh [--suite a|beside] [--build DIR] [--only TEXT] [PROGRAM...]
-  --suite a       the kernel's interfaces, in guest time alone
-  --suite beside  devices of QEMU with a program beside it, in the host's time (both)
+usage: tests/vm/run.sh [--suite a|usb|beside] [--build DIR] [--only TEXT] [PROGRAM...]
+  --suite a       CAN and the loop's punctuality, in guest time alone
+  --suite usb     devices on USB, likewise
+  --suite beside  a device of QEMU with a program beside it, in the host's time (without --suite: all)
   --build DIR   where hapticd and hapticctl were built (build)
   --only TEXT   only the scripts of tests/vm/guest with TEXT in their name
   PROGRAM       further programs for the guest, into its /usr/bin
@@ -19,7 +20,7 @@ END
 
 build=build
 only=
-suites=(a beside)
+suites=(a usb beside)
 programs=()
 while [ $# -gt 0 ]; do
   case $1 in
@@ -28,7 +29,7 @@ while [ $# -gt 0 ]; do
       case $1 in
         --suite)
           case $2 in
-            a | beside) suites=("$2") ;;
+            a | usb | beside) suites=("$2") ;;
             *) echo "tests/vm/run.sh: no suite $2" >&2 && exit 64 ;;
           esac
           ;;
@@ -82,15 +83,16 @@ must_not_pass 33 'hapticd-vm: passed, 0 checks'
 
 # Why each option is there: README.md. Never KVM, not even as a choice.
 boot() { # boot <serial log> <words for the kernel> <option>...
-  timeout 600 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -seed 1 -nographic -no-reboot -nodefaults \
+  timeout 900 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -seed 1 -nographic -no-reboot -nodefaults \
     -serial stdio -monitor none -device isa-debug-exit,iobase=0xf4,iosize=0x04 "${@:3}" \
     -kernel "$kernel_directory/vmlinux" -initrd build/vm/initramfs \
     -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr $2${only:+ vm_only=$only}" < /dev/null > "$1" 2>&1
 }
+readonly guest_time=(-icount "shift=0,sleep=off" -rtc "base=2026-01-01T00:00:00,clock=vm")
 boot_a() {
-  boot build/vm/serial.log '' -icount shift=0,sleep=off -rtc base=2026-01-01T00:00:00,clock=vm \
-    -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb
+  boot build/vm/serial.log '' "${guest_time[@]}" -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb
 }
+boot_usb() { boot build/vm/usb.log vm_suite=usb "${guest_time[@]}"; }
 # A Falcon's board, to which QEMU's bridge has a line.
 boot_beside() {
   local code=0 line=build/vm/line board
@@ -105,8 +107,21 @@ boot_beside() {
   return "$code"
 }
 
+# chosen <suite>: --only leaves some of it.
+chosen() {
+  local script directory=tests/vm/guest
+  [ "$1" = a ] || directory+=/$1
+  for script in "$directory"/[0-9]*.sh; do
+    case $script in *"$only"*) return ;; esac
+  done
+  return 1
+}
+
 failed=0
+ran=0
 for suite in "${suites[@]}"; do
+  chosen "$suite" || continue
+  ran=$((ran + 1))
   started=$SECONDS
   log=build/vm/serial.log
   [ "$suite" = a ] || log=build/vm/$suite.log
@@ -121,7 +136,7 @@ for suite in "${suites[@]}"; do
   failed=1
   case $code in
     35) why="checks failed" ;;
-    124) why="not done after 600 s" ;;
+    124) why="not done after 900 s" ;;
     33) why="the exit code and the lines contradict each other" ;;
     *) why="QEMU ended with $code: a panic, a power-off or an option that it does not know" ;;
   esac
@@ -129,5 +144,6 @@ for suite in "${suites[@]}"; do
   grep -avE '^ok ' "$log" | tail -n 60 >&2 || true
   echo "vm: FAILED: $suite: $why; $took; all that was said: $log"
 done
+[ "$ran" -gt 0 ] || { echo "tests/vm/run.sh: no script has $only in its name" >&2 && exit 64; }
 [ "$failed" -eq 0 ] || exit 1
 echo "vm: passed; $((packed - prepared)) s pack, $SECONDS s in all"

@@ -14,7 +14,7 @@ devices:
       out: {bytes: 8, efforts: [{offset_bits: 0, width_bits: 16, signed: true, scale: 0.001}]}
     usb: {id: '1234:0006', transport: libusb}
     kinematics: {cartesian: {directions: [x]}}
-    latency_s: 0.004
+    latency_s: 0.005
     axes:
       - name: x
         encoder: {counts_per_m: 10000}
@@ -52,7 +52,7 @@ TEST(CompileReport, MapsAreWhatTheKeysSay) {
           "modulus: 4096, scale: 2, offset: 7,"),
       "out: {bytes: 8, efforts: [{offset_bits: 0,",
       "out: {id: 4, bytes: 9, constants: [{byte: 1, value: 200}], heartbeat: {offset_bits: 16, "
-      "width_bits: 4}, safe: [4, 1, 2, 3, 4, 5, 6, 7, 255], every_s: 0.004, watchdog_s: 0.02, "
+      "width_bits: 4}, safe: [4, 1, 2, 3, 254, 12, 6, 7, 255], every_s: 0.004, watchdog_s: 0.02, "
       "efforts: [{offset_bits: 32, endian: big, offset: 0.5, least: -9, most: 10,"));
   ASSERT_TRUE(compiled.usb.at(0));
   const usb::ReportOptions& report = compiled.usb[0]->report;

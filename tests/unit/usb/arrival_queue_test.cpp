@@ -63,9 +63,9 @@ TEST(ArrivalQueue, WithIdsTheNewestOfEachStaysAndAnswersAll) {
   queue.push(ArrivalBytes{2, 1}, 3);
   queue.push(ArrivalBytes{1, 2}, 4);
   queue.push(ArrivalBytes{0xa1, 2}, 5);
+  EXPECT_EQ(next(queue), (ArrivalBytes{1, 2})) << "in the place of the one that it replaces";
   EXPECT_EQ(next(queue), (ArrivalBytes{0xa1, 1}));
   EXPECT_EQ(next(queue), (ArrivalBytes{2, 1}));
-  EXPECT_EQ(next(queue), (ArrivalBytes{1, 2}));
   EXPECT_EQ(next(queue), (ArrivalBytes{0xa1, 2}));
   EXPECT_EQ(queue.skipped(), 1U);
 }

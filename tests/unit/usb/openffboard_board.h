@@ -97,6 +97,7 @@ class FakeBoard {
       ++out.replaced;
     }
     waiting_ = bytes;
+    out.waits = true;
     return usb::Status::ok;
   }
   usb::Status flush(std::int64_t until_ns) {
@@ -147,6 +148,7 @@ class FakeBoard {
       out.since_ns = waiting_.empty() ? 0 : now_ns;
       going_ = std::move(waiting_);
       waiting_.clear();
+      out.waits = false;
     }
     for (Effect& effect : effects)
       if (now_ns - effect.started_ns > effect.duration_ms * kFrame_ns) effect.plays = false;

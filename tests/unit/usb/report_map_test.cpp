@@ -107,11 +107,14 @@ TEST(ReportMap, SafeReportsAreAsGivenWithTheHeartbeat) {
   map.constants = {{.at = 7, .value = 0xa5}};
   EXPECT_EQ(check(map).fault, Fault::none);
   EXPECT_EQ(hex(safe_report(map, 0x13).report()), "00000000000003a5");
-  map.safe = bytes("0100020003001000");
+  map.safe = bytes("0100010001001000");  // a step of each
   EXPECT_EQ(check(map).fault, Fault::none);
   const Encoded safe = safe_report(map, 0x1f);
-  EXPECT_EQ(hex(safe.report()), "0100020003001f00");
-  EXPECT_EQ(safe.raw[2], 3);
+  EXPECT_EQ(hex(safe.report()), "0100010001001f00");
+  EXPECT_EQ(safe.raw[2], 1);
+  map.safe = bytes("0100010002001000");
+  EXPECT_EQ(check(map).fault, Fault::safe_report) << "it asks for a force";
+  map.safe = bytes("0100010001001000");
   map.safe.pop_back();
   EXPECT_EQ(check(map), (Problem{Fault::safe_report, kMostFields}));
   OutputMap numbered{.report_id = 2, .report_bytes = 2, .safe = bytes("0100")};

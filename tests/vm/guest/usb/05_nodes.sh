@@ -1,7 +1,7 @@
 #!/bin/sh
 # USB without hapticd: emulated devices appear at the kernel, and udev gives their nodes to the group that the service has.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 usb_up
 cp /vm/falcon.bin /run/falcon.bin

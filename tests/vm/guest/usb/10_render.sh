@@ -1,7 +1,7 @@
 #!/bin/sh
 # A certified wall on devices on USB, by every way into the kernel: hapticd against devices that hapticctl emulates.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 usb_up
 cp /vm/falcon.bin /run/falcon.bin

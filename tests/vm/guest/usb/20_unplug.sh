@@ -1,8 +1,8 @@
 #!/bin/sh
 # A Falcon that is pulled out at every stage: it is a fault within a tick, no force is made afterwards, and once it is plugged
 # in again `hapticctl enable` goes on, in the same hapticd.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 usb_up
 cp /vm/falcon.bin /run/falcon.bin
@@ -21,6 +21,7 @@ state_is() {
 unplugged() { grep -q '^unplug falcon' "$scratch/emulate.log"; }
 
 # A tick is 6.7 ms.
+# A tick is 6.7 ms.
 # late: how long after it was pulled out the first tick of the recording is a fault, in ms; "none": none is.
 late() {
   hapticctl export --csv -o "$scratch/ticks.csv" /run/usb.hrec > /dev/null 2>&1 || return 0
@@ -33,6 +34,7 @@ pulled() {
   check=$1
   why=
   rm -f /run/usb.hrec
+  : > "$scratch/enable"
   # Where it is to be pulled out while it is ready, nobody enables it.
   if [ "$2" = ready ]; then grep -v '^start:' "$original" > "$config"; else cp "$original" "$config"; fi
   emulate "$config"
@@ -42,9 +44,14 @@ pulled() {
   daemon=$!
   case $2 in
     *%) wait_for 100 unplugged || why="was not pulled out" ;;
+    homing)
+      # Its grip is pulled out and pushed in within 0.3 s.
+      timeout 15 sh -c "until grep -q 'falcon.one is not homed' $scratch/log; do sleep 0.02; done" || why="never homed"
+      befall unplug:falcon
+      ;;
     *)
       wait_for 150 state_is "$2" || why="never $2"
-      [ "$2" != enabled ] || sleep 0.5
+      sleep 0.5
       befall unplug:falcon
       ;;
   esac
@@ -53,28 +60,38 @@ pulled() {
   after=$(json "$scratch/status" state)
   [ "$after" != enabled ] || why="$why; still enabled"
   befall plug:falcon
-  # Homing takes a third of a second, loading firmware one and a half. It makes no force before it is told to.
-  sleep 4
-  befall mark:falcon
-  sleep 0.5
-  if [ "$2" = enabled ] && state_is enabled; then why="$why; enabled by itself"; fi
-  befall mark:falcon
-  hapticctl enable > "$scratch/enable" 2>&1 || true
-  wait_for 150 state_is enabled || why="$why; not enabled again"
-  sleep 0.5
+  case $2 in
+    homing | ready | enabled)
+      # Nobody has told it to make a force: until then there is none.
+      sleep 1
+      befall mark:falcon
+      sleep 0.3
+      ! state_is enabled || why="$why; enabled by itself"
+      befall mark:falcon
+      hapticctl enable > "$scratch/enable" 2>&1 || true
+      ;;
+  esac
+  # What was pulled out before it was ready goes on by itself.
+  wait_for 100 state_is enabled || why="$why; not enabled in the end"
+  sleep 0.3
   kill -TERM "$daemon"
   code=0
   wait "$daemon" || code=$?
   emulated || why="$why; the emulator ended early"
   figures="$after half a second later"
+  case $2 in
+    homing | ready | enabled)
+      force=$(phase mark largest_torque 1)
+      figures="$figures, largest torque before it was enabled again $force N m"
+      holds "${force:-1} == 0" || why="$why; force that nobody asked for"
+      ;;
+  esac
   if [ "$2" = enabled ]; then
     late=$(late)
-    force=$(phase mark largest_torque 1)
-    figures="$figures, first tick of the fault after $late ms, largest torque before it was enabled again $force N m"
-    [ "$late" != none ] && holds "${late:-99} < 8" || why="$why; the fault is late"
-    holds "${force:-1} == 0" || why="$why; force after the fault"
+    figures="$figures, first tick of the fault after $late ms"
+    { [ "$late" != none ] && holds "${late:-99} < 8"; } || why="$why; the fault is late"
   else
-    holds "$(phase plug largest_torque) == 0" || [ "$2" = homing ] || why="$why; force"
+    holds "$(phase unplug largest_torque) == 0" || why="$why; force before it was ready"
   fi
   if [ -z "$why" ]; then ok "$check" "$figures"; else
     failed "$check" "${why#; }; $figures"

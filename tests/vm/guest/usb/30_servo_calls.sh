@@ -1,7 +1,7 @@
 #!/bin/sh
 # The servo thread makes no USB call, whatever the device: all that it asks of the kernel is to be woken.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 usb_up
 cp /vm/falcon.bin /run/falcon.bin
