@@ -85,7 +85,7 @@ class Loop {
     const std::int64_t missed = begin_tick();
     if (aux_.faulted || !aux_.armed) {
       return fail(ExitCode::unavailable,
-                  aux_.faulted ? "the device reports a fault: " + std::string(device_.fault_text())
+                  aux_.faulted ? "the device reports a fault: " + device_.fault_text()
                                : std::string("the power stage of the device went off"));
     }
     book_missed(missed);
@@ -170,7 +170,7 @@ Result<void> run(Loop& loop, const IdentifySetup& setup, const std::atomic<bool>
                  const IdentifyProgress& progress) {
   const identify::Runner& runner = loop.session().runner;
   if (!loop.arm(interrupt) && !interrupt.load()) {
-    const std::string why(setup.device->fault_text());
+    const std::string why = setup.device->fault_text();
     return fail(ExitCode::unavailable, "the power stage of the device did not come on" +
                                            (why.empty() ? why : "; the driver says: " + why));
   }

@@ -55,7 +55,7 @@ std::string Supervisor::fault_words() const {
   const std::uint16_t device = servo_.fault.device;
   const bool by_driver = servo_.fault.code == Fault::device && device < engine_->devices().size();
   return describe_fault(servo_.fault, engine_->program().spec(),
-                        by_driver ? engine_->device(device).fault_text() : std::string_view());
+                        by_driver ? engine_->device(device).fault_text() : std::string());
 }
 
 /// Tells each fault once, counts it by kind.
@@ -82,7 +82,7 @@ void Supervisor::note_fault() {
 void Supervisor::watch_waiting() {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < engine_->devices().size(); ++i)
-    words.emplace_back(engine_->device(i).status_text());
+    words.push_back(engine_->device(i).status_text());
   waiting_ = waiting_for(engine_->program().spec(), engine_->live(), words);
   const bool asked = engine_->shared().enable.load() && state_ != State::off;
   if (!asked) told_waiting_.clear();

@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "control/core/result.h"
@@ -95,10 +94,12 @@ class Device {
   virtual void set_armed(bool armed) noexcept = 0;
   /// Zero force now, by the shortest way that the device has. Callable at any time after connect().
   virtual void stop() noexcept = 0;
-  /// Why Aux::faulted is set, as a static text for people.
-  virtual std::string_view fault_text() const noexcept { return {}; }
-  /// What it is about while it gives no samples, as a static text for people: "not plugged in".
-  virtual std::string_view status_text() const noexcept { return {}; }
+
+  // -- for people, any thread but the loop's
+  /// Why Aux::faulted is set.
+  virtual std::string fault_text() const { return {}; }
+  /// What it is about while it gives no samples: "not plugged in".
+  virtual std::string status_text() const { return {}; }
   /// nullptr: the device has no bus.
   virtual const Traffic* traffic() const noexcept { return nullptr; }
 };

@@ -1,28 +1,28 @@
-// Why a device cannot go on, for people: put together by the servo thread without the heap, read by any other. A text
-// stays as it is; the next one is written beside it.
+// Why a device cannot go on, for people: put together by one thread without the heap, read by any other.
 #pragma once
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <charconv>
 #include <cstddef>
+#include <string>
 #include <string_view>
+
+#include "control/rt/latest.h"
 
 namespace hapticd::drivers {
 
 class FaultText {
  public:
-  /// Begins a text; it is seen once publish() is called.
+  /// Begins a text, up to 240 letters; it is seen once publish() is called.
   FaultText& begin() noexcept {
-    next_ = (next_ + 1) % kTexts;
-    texts_[next_].size = 0;
+    text_.size = 0;
     return *this;
   }
   FaultText& add(std::string_view text) noexcept {
-    Text& now = texts_[next_];
-    const std::size_t count = std::min(text.size(), now.letters.size() - now.size);
-    std::copy_n(text.begin(), count, now.letters.begin() + static_cast<std::ptrdiff_t>(now.size));
-    now.size += count;
+    const std::size_t count = std::min(text.size(), text_.letters.size() - text_.size);
+    std::copy_n(text.begin(), count,
+                text_.letters.begin() + static_cast<std::ptrdiff_t>(text_.size));
+    text_.size += count;
     return *this;
   }
   FaultText& add(long long number, int base = 10) noexcept {
@@ -30,23 +30,23 @@ class FaultText {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, base).ptr;
     return add(std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())));
   }
-  void publish() noexcept { shown_.store(&texts_[next_], std::memory_order_release); }
+  void publish() noexcept { shown_.store(text_); }
 
-  std::string_view view() const noexcept {
-    const Text* text = shown_.load(std::memory_order_acquire);
-    return text == nullptr ? std::string_view{}
-                           : std::string_view{text->letters.data(), text->size};
+  /// Any thread but the loop's: it allocates, and begins again while a text is being published.
+  std::string text() const {
+    Text text;
+    while (shown_.count() != 0 && !shown_.load(text)) {
+    }
+    return {text.letters.data(), text.size};
   }
 
  private:
   struct Text {
-    std::array<char, 240> letters{};
     std::size_t size = 0;
+    std::array<char, 240> letters{};
   };
-  static constexpr std::size_t kTexts = 8;  // so many faults would have to come while one is read
-  std::array<Text, kTexts> texts_{};
-  std::size_t next_ = 0;
-  std::atomic<const Text*> shown_{nullptr};
+  Text text_{};  ///< of who writes
+  rt::Latest<Text> shown_;
 };
 
 }  // namespace hapticd::drivers

@@ -196,7 +196,7 @@ void SimDevice::stop() noexcept {
   for (Wires& axis : wires()) axis.command(0);
 }
 
-std::string_view SimDevice::fault_text() const noexcept {
+std::string SimDevice::fault_text() const {
   return failures_.on(FailureKind::fault) ? "scripted failure of a simulated device" : "";
 }
 

@@ -45,7 +45,7 @@ class SimDevice final : public drivers::Device {
   void command(std::span<const double> effort, std::span<double> delivered) noexcept override;
   void set_armed(bool armed) noexcept override { arm_wanted_ = armed; }
   void stop() noexcept override;
-  std::string_view fault_text() const noexcept override;
+  std::string fault_text() const override;
 
   const DeviceOptions& options() const noexcept { return options_; }
   /// As of the last request(); axis < options().axes.size(), after connect().

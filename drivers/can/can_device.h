@@ -36,7 +36,7 @@ class CanDevice final : public drivers::Device {
   void command(std::span<const double> effort, std::span<double> delivered) noexcept override;
   void set_armed(bool armed) noexcept override;
   void stop() noexcept override;
-  std::string_view fault_text() const noexcept override { return fault_text_.view(); }
+  std::string fault_text() const override { return fault_text_.text(); }
 
   const drivers::Traffic* traffic() const noexcept override { return &traffic_; }
 

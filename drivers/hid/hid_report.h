@@ -1,6 +1,7 @@
 // A board of one's own that sends its positions and takes its forces in reports of fixed layout, as the config describes
 // them. It sends whenever it likes; what it has to be told is told at least every `every_s`.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -19,7 +20,9 @@ class HidReport final : public usb::Protocol {
   usb::Heard take(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns,
                   usb::Reading& reading) override;
   usb::Status tell(const usb::Command& command, std::int64_t now_ns) override;
-  double keep_alive_s() const noexcept override { return options_.report.every_s; }
+  std::int64_t tell_again_ns(std::int64_t now_ns) const noexcept override {
+    return now_ns + std::llround(1e9 * options_.report.every_s);
+  }
   void close(usb::Host& host, std::int64_t until_ns) noexcept override;
   std::string_view fault_text() const noexcept override { return fault_; }
   std::uint64_t lost() const noexcept override { return lost_; }

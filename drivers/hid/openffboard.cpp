@@ -18,7 +18,6 @@ constexpr std::int64_t kSetUp_ns = 5000 * kMillisecond_ns;
 constexpr std::int64_t kWayOut_ns = 100 * kMillisecond_ns;
 /// A board that still looks at its positions sends one every 100 ms, or a little later.
 constexpr std::int64_t kPositionsStopped_ns = 150 * kMillisecond_ns;
-constexpr double kMostKeepAlive_s = 0.005;
 constexpr Usage kJoystick = 0x0001'0004;
 constexpr std::uint8_t kGamepadReport = 1, kStateReport = 2;
 
@@ -32,10 +31,10 @@ class OpenFfboard final : public usb::Protocol {
   Heard take(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns,
              usb::Reading& reading) override;
   usb::Status tell(const usb::Command& command, std::int64_t now_ns) override {
-    return port_ ? force_.tell(*port_, command, now_ns, position_ns_) : usb::Status::gone;
+    return port_ ? force_.tell(*port_, command, now_ns, sample_ns_) : usb::Status::gone;
   }
-  double keep_alive_s() const noexcept override {
-    return std::min(options_.openffboard.dead_man_s / 3, kMostKeepAlive_s);
+  std::int64_t tell_again_ns(std::int64_t now_ns) const noexcept override {
+    return force_.tell_again_ns(now_ns, sample_ns_);
   }
   void close(usb::Host& host, std::int64_t until_ns) noexcept override;
   std::string_view fault_text() const noexcept override { return fault_; }
@@ -58,8 +57,8 @@ class OpenFfboard final : public usb::Protocol {
   Board board_{};
   Force force_;
 
-  usb::Reading position_{};  ///< as the last gamepad report has it
-  std::int64_t position_ns_ = 0;
+  usb::Reading position_{};                       ///< as the last gamepad report has it
+  std::int64_t position_ns_ = 0, sample_ns_ = 0;  ///< when the last of each came
   std::optional<State> state_{};
   bool stopped_ = false;  ///< by the emergency stop
   std::string_view fault_{};
@@ -89,7 +88,7 @@ void OpenFfboard::forget() noexcept {
   touched_ = stopped_ = false;
   settings_ = {};
   position_ = {};
-  position_ns_ = 0;
+  position_ns_ = sample_ns_ = 0;
   state_.reset();
   fault_ = {};
 }
@@ -135,6 +134,7 @@ Heard OpenFfboard::take(std::span<const std::uint8_t> bytes, std::int64_t stamp_
   if (bytes[0] == kStateReport) heard = take_state(bytes, stamp_ns);
   if (bytes[0] == kCommandReport) heard = take_answer(bytes, stamp_ns);
   if (heard == Heard::malformed) return heard;
+  if (heard == Heard::sample) sample_ns_ = stamp_ns;
   if (const std::string_view why = trouble(); !why.empty()) {
     fault_ = why;
     heard = Heard::fault;

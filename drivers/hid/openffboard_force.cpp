@@ -16,6 +16,9 @@ constexpr std::int64_t kRefresh_ns = 10 * kMillisecond_ns;  // of a magnitude th
 constexpr std::int64_t kAskSeldom_ns = 2 * kMillisecond_ns;
 constexpr std::int64_t kAskAlways_ns = 50 * kMillisecond_ns;
 constexpr std::int64_t kConfirm_ns = 5 * kMillisecond_ns;
+/// A question may have to wait for a force, and for the next frame.
+constexpr double kAskEarly_s = 2e-3;
+constexpr std::int64_t kTellSoon_ns = kMillisecond_ns / 2, kTellAgain_ns = 5 * kMillisecond_ns;
 /// From the start's being sent to its being with the board: a report before it, and a host that is late. At most a quarter
 /// of the effect's time.
 constexpr std::int64_t kMargin_ns = 4 * kMillisecond_ns;
@@ -59,11 +62,11 @@ bool Force::is_answered() noexcept {
 // -- what is told
 
 Status Force::tell(usb::Port& port, const usb::Command& command, std::int64_t now_ns,
-                   std::int64_t moved_ns) {
+                   std::int64_t sample_ns) {
   choose_phase(command.armed, now_ns);
   for (int i = 0; i < 2; ++i) {
     bool sent = false;
-    if (const Status status = next(port, command, now_ns, moved_ns, sent); status != Status::ok)
+    if (const Status status = next(port, command, now_ns, sample_ns, sent); status != Status::ok)
       return status;
     // A port that sends while the caller waits has taken its time.
     if (!sent || port.outgoing().since_ns == 0) break;
@@ -95,7 +98,7 @@ void Force::choose_phase(bool armed, std::int64_t now_ns) noexcept {
 
 /// One report, if one is due and there is room for it.
 Status Force::next(usb::Port& port, const usb::Command& command, std::int64_t now_ns,
-                   std::int64_t moved_ns, bool& sent) {
+                   std::int64_t sample_ns, bool& sent) {
   const bool free = outbox_.is_free(port);
   sent = free;
   if (phase_ == Phase::arming || phase_ == Phase::disarming) {
@@ -103,12 +106,13 @@ Status Force::next(usb::Port& port, const usb::Command& command, std::int64_t no
     sent = free || (step_ < board_.layout.axes && outbox_.waiting(port) == step_);
     return sent ? step(port, now_ns) : Status::ok;
   }
-  if (phase_ == Phase::running && due_start(now_ns))
-    return free ? start(port, *due_start(now_ns), now_ns) : Status::ok;
   const bool running = phase_ == Phase::running;
+  const auto to_start = running ? due_start(now_ns) : std::nullopt;
   const auto due = running ? due_magnitude(command, now_ns) : std::nullopt;
-  // In turn with forces, however long the board takes to answer.
-  if (free && ask_is_due(now_ns, moved_ns) && !(asked_last_ && due)) return ask(port, now_ns);
+  // In turn with the others, however long the board takes to answer.
+  const bool their_turn = asked_last_ && (to_start || due);
+  if (free && now_ns >= ask_ns(sample_ns) && !their_turn) return ask(port, now_ns);
+  if (to_start) return free ? start(port, *to_start, now_ns) : Status::ok;
   const auto axis = free ? due : outbox_.waiting(port);
   sent = running && axis.has_value();
   if (!sent) return Status::ok;
@@ -151,6 +155,7 @@ Status Force::set(usb::Port& port, std::size_t axis) {
 Status Force::start(usb::Port& port, std::size_t axis, std::int64_t now_ns) {
   const Status status = outbox_.send(port, start_effect(board_.effects[axis]));
   if (status == Status::ok) axes_[axis].started_ns = now_ns;
+  asked_last_ = false;
   return status;
 }
 
@@ -195,16 +200,20 @@ std::optional<std::size_t> Force::due_start(std::int64_t now_ns) const noexcept 
   return std::nullopt;
 }
 
-/// So often that samples stay young while the position does not change.
-bool Force::ask_is_due(std::int64_t now_ns, std::int64_t moved_ns) const noexcept {
-  const double spare_s = options_.worst_sample_age_s - options_.arrival_age_s;
-  const std::int64_t every_ns =
-      std::max(kAskSeldom_ns, std::int64_t{std::llround(1e9 * spare_s / 3)});
-  const std::int64_t asked_for_ns = now_ns - asked_ns_;
-  if (asked_ns_ == 0 || asked_for_ns >= kAskAlways_ns) return true;
-  if (phase_ == Phase::running && !enabled_) return asked_for_ns >= kConfirm_ns;
-  const bool quiet = now_ns - moved_ns >= every_ns + kMillisecond_ns / 2;
-  return quiet && asked_for_ns >= every_ns && unanswered_ < kMostUnanswered;
+/// When the next question is due: so early that its answer, a sample, is there before the last one is too old.
+std::int64_t Force::ask_ns(std::int64_t sample_ns) const noexcept {
+  const std::int64_t always_ns = asked_ns_ == 0 ? 0 : asked_ns_ + kAskAlways_ns;
+  if (phase_ == Phase::running && !enabled_) return std::min(always_ns, asked_ns_ + kConfirm_ns);
+  if (unanswered_ >= kMostUnanswered) return always_ns;
+  const double wait_s = most_between_samples_s(options_) - board_.round_trip_s - kAskEarly_s;
+  const auto wait_ns = std::max<std::int64_t>(0, std::llround(1e9 * wait_s));
+  return std::min(always_ns, std::max(sample_ns + wait_ns, asked_ns_ + kAskSeldom_ns));
+}
+
+/// A question that found the port taken is tried again soon.
+std::int64_t Force::tell_again_ns(std::int64_t now_ns, std::int64_t sample_ns) const noexcept {
+  const std::int64_t most_ns = std::min(dead_man_ns() / 3, kTellAgain_ns);
+  return std::clamp(ask_ns(sample_ns), now_ns + kTellSoon_ns, now_ns + most_ns);
 }
 
 /// Of those that have changed, or are to be said again, the one that was not told for the longest time.

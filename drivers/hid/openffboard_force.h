@@ -29,9 +29,10 @@ class Force {
   explicit Force(const usb::DeviceOptions& options) : options_(options) {}
   void begin(const Board& board);
 
-  /// The next reports, at most two. `moved_ns`: when the last position came.
+  /// The next reports, at most two. `sample_ns`: when the last sample came.
   usb::Status tell(usb::Port& port, const usb::Command& command, std::int64_t now_ns,
-                   std::int64_t moved_ns);
+                   std::int64_t sample_ns);
+  std::int64_t tell_again_ns(std::int64_t now_ns, std::int64_t sample_ns) const noexcept;
   /// Off, as far as there is time.
   void end(usb::Port& port, usb::Host& host, std::int64_t until_ns);
 
@@ -55,7 +56,7 @@ class Force {
 
   void choose_phase(bool armed, std::int64_t now_ns) noexcept;
   usb::Status next(usb::Port& port, const usb::Command& command, std::int64_t now_ns,
-                   std::int64_t moved_ns, bool& sent);
+                   std::int64_t sample_ns, bool& sent);
   usb::Status step(usb::Port& port, std::int64_t now_ns);
   usb::Status arming_step(usb::Port& port, std::int64_t now_ns);
   usb::Status disarming_step(usb::Port& port, std::int64_t now_ns);
@@ -66,7 +67,7 @@ class Force {
   usb::Status ask(usb::Port& port, std::int64_t now_ns);
   std::int16_t wanted_magnitude(const usb::Command& command, std::size_t axis) const noexcept;
   std::optional<std::size_t> due_start(std::int64_t now_ns) const noexcept;
-  bool ask_is_due(std::int64_t now_ns, std::int64_t moved_ns) const noexcept;
+  std::int64_t ask_ns(std::int64_t sample_ns) const noexcept;
   std::optional<std::size_t> due_magnitude(const usb::Command& command,
                                            std::int64_t now_ns) const noexcept;
   std::int64_t dead_man_ns() const noexcept;

@@ -59,6 +59,18 @@ usb::Opened<double> measure_round_trip(Talk& talk) {
   return 1e-9 * static_cast<double>(took_ns[kRoundTrips / 2]);
 }
 
+/// While the board does not move its answers are all the samples that there are.
+usb::Opened<void> compare_round_trip(const Board& board, const usb::DeviceOptions& options) {
+  constexpr double kFrame_s = 1e-3;  // that one answer may take more than another
+  const double most_s = most_between_samples_s(options) - kFrame_s;
+  if (board.round_trip_s <= most_s) return {};
+  const auto ms = [](double seconds) { return text_of(1e-2 * std::round(1e5 * seconds)) + " ms"; };
+  return not_opened("expected answers within " + ms(most_s) +
+                    ", so that samples are no older than usb.max_age_s, found " +
+                    ms(board.round_trip_s) +
+                    " (median); raise usb.max_age_s, and latency_s with it");
+}
+
 /// A new constant force; its magnitude is 0.
 usb::Opened<std::uint8_t> create_effect(Talk& talk) {
   if (const usb::Status status = talk.port().set_feature(kCreateConstantForce);
@@ -94,6 +106,10 @@ usb::Opened<void> make_effects(Talk& talk, Board& board, double dead_man_s) {
 
 }  // namespace
 
+double most_between_samples_s(const usb::DeviceOptions& options) noexcept {
+  return options.worst_sample_age_s - options.arrival_age_s;
+}
+
 ReportBytes set_effect(const Board& board, std::size_t axis, double dead_man_s) {
   constexpr double kMostDuration_ms = 32767;
   ReportBytes report{};
@@ -121,6 +137,7 @@ usb::Opened<Board> set_up(Talk& talk, const usb::DeviceOptions& options, Setting
   const auto round_trip_s = measure_round_trip(talk);
   if (!round_trip_s) return tl::unexpected(round_trip_s.error());
   board.round_trip_s = *round_trip_s;
+  if (auto good = compare_round_trip(board, options); !good) return tl::unexpected(good.error());
   touched = true;
   if (auto done = settings.neutralise(talk, board.layout.axes); !done)
     return tl::unexpected(done.error());

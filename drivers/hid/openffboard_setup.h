@@ -20,6 +20,9 @@ struct Board {
 usb::Opened<Board> set_up(Talk& talk, const usb::DeviceOptions& options, Settings& settings,
                           bool& touched);
 
+/// From one sample to the next, at most, for samples to be young enough [s].
+double most_between_samples_s(const usb::DeviceOptions& options) noexcept;
+
 /// Set Effect of an axis. The firmware enables the actuators with it.
 ReportBytes set_effect(const Board& board, std::size_t axis, double dead_man_s);
 

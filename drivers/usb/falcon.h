@@ -21,7 +21,9 @@ class Falcon final : public Protocol {
   Port* port() noexcept override { return found_.port.get(); }
   Heard take(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns, Reading& reading) override;
   Status tell(const Command& command, std::int64_t now_ns) override;
-  double keep_alive_s() const noexcept override { return 2e-3; }
+  std::int64_t tell_again_ns(std::int64_t now_ns) const noexcept override {
+    return now_ns + 2'000'000;
+  }
   void close(Host& host, std::int64_t until_ns) noexcept override;
   double round_trip_s() const noexcept override { return round_trip_s_; }
 

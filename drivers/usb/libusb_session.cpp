@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <mutex>
 #include <utility>
@@ -126,8 +127,21 @@ void LibusbSession::wait(std::int64_t until_ns, bool may_be_woken) noexcept {
   wait_for(std::span(waited_for_).first(waited_for_.size() - (may_be_woken ? 0 : 1)), until_ns);
 }
 
+/// A stall is an answer, too.
+bool LibusbSession::answers() noexcept {
+  constexpr unsigned kAnswer_ms = 100;
+  constexpr std::uint8_t kFromDevice = 0x80;
+  std::array<std::uint8_t, 2> status{};
+  const int result =
+      libusb_control_transfer(handle_, kFromDevice, LIBUSB_REQUEST_GET_STATUS, 0, 0, status.data(),
+                              static_cast<std::uint16_t>(status.size()), kAnswer_ms);
+  return result >= 0 || result == LIBUSB_ERROR_PIPE;
+}
+
 void LibusbSession::close() noexcept {
   if (handle_ != nullptr) {
+    // The kernel's driver would ask the device what it is, 5 s for each question: not one that is gone, or that hangs.
+    if (interface_ >= 0 && !answers()) (void)libusb_set_auto_detach_kernel_driver(handle_, 0);
     if (interface_ >= 0) (void)libusb_release_interface(handle_, interface_);
     libusb_close(handle_);
   }

@@ -33,7 +33,7 @@ class LibusbSession {
   void pump() noexcept;
   /// Until something may have completed, at most until then; or until woken, if it `may_be_woken`.
   void wait(std::int64_t until_ns, bool may_be_woken) noexcept;
-  /// Gives the interface back to the kernel's driver. Transfers still on their way are never called back after it.
+  /// Gives the interface back to the kernel's driver, if the device still answers. Transfers still on their way are never called back after it.
   void close() noexcept;
 
   /// Control transfers, which wait 1 s at most.
@@ -48,6 +48,7 @@ class LibusbSession {
   int wrap(int node) noexcept;
   bool is_still(const About& about) const noexcept;
   void read_descriptors();
+  bool answers() noexcept;
 
   Waker& waker_;
   int node_ = -1, interface_ = -1;  ///< -1: not claimed

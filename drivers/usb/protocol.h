@@ -76,10 +76,11 @@ class Protocol {
   /// What receive() gave. Fills all of `reading` but link, stamp_ns and failures.
   virtual Heard take(std::span<const std::uint8_t> bytes, std::int64_t stamp_ns,
                      Reading& reading) = 0;
-  /// Sends what `command` wants, or the next step of switching the power stage on or off. Called at least every
-  /// keep_alive_s(). Efforts are finite and within the axes' maxima.
+  /// Sends what `command` wants, or the next step of switching the power stage on or off. Efforts are finite and within the
+  /// axes' maxima.
   virtual Status tell(const Command& command, std::int64_t now_ns) = 0;
-  virtual double keep_alive_s() const noexcept = 0;
+  /// When it wants to be told again after that, if the loop gives nothing new before.
+  virtual std::int64_t tell_again_ns(std::int64_t now_ns) const noexcept = 0;
   /// Zero force and power off, as far as it can still be told within `until_ns`; then closed. Any time after open().
   virtual void close(Host& host, std::int64_t until_ns) noexcept = 0;
   virtual std::string_view fault_text() const noexcept { return {}; }

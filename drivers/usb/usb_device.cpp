@@ -68,9 +68,9 @@ void UsbDevice::disconnect() noexcept {
   link_ = 0;
 }
 
-std::string_view UsbDevice::status_text() const noexcept {
-  return exchange_.link.load(std::memory_order_acquire) == 0 ? exchange_.doing.view()
-                                                             : std::string_view{};
+std::string UsbDevice::status_text() const {
+  return exchange_.link.load(std::memory_order_acquire) == 0 ? exchange_.doing.text()
+                                                             : std::string{};
 }
 
 // -- loop

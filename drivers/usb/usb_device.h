@@ -34,8 +34,8 @@ class UsbDevice final : public drivers::Device {
   void command(std::span<const double> effort, std::span<double> delivered) noexcept override;
   void set_armed(bool armed) noexcept override { arm_wanted_ = armed; }
   void stop() noexcept override;
-  std::string_view fault_text() const noexcept override { return exchange_.lost.view(); }
-  std::string_view status_text() const noexcept override;
+  std::string fault_text() const override { return exchange_.lost.text(); }
+  std::string status_text() const override;
   const drivers::Traffic* traffic() const noexcept override { return &exchange_.traffic; }
 
  private:

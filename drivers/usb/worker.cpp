@@ -93,7 +93,6 @@ void Worker::connect(const Identity& identity) {
   reading_ = {.link = link_};
   command_ = {};
   next_tell_ns_ = heard_ns_ = now_ns;
-  said_ = {};
   exchange_.traffic.round_trip_ns.store(ns(protocol_.round_trip_s()), std::memory_order_relaxed);
   exchange_.traffic.connections.store(link_, std::memory_order_relaxed);
   exchange_.link.store(link_, std::memory_order_release);
@@ -103,15 +102,13 @@ void Worker::exchange() {
   while (!abandoned()) {
     if (!tell_if_due() || !takes_commands()) return;
     const Arrival arrival = protocol_.port()->receive(next_tell_ns_);
-    if (arrival.status == Status::nothing) {
-      if (!speaks()) return;
-      continue;
-    }
-    if (arrival.status != Status::ok) {
+    if (arrival.status == Status::ok) {
+      if (!hear(arrival)) return;
+    } else if (arrival.status != Status::nothing) {
       lost(arrival.status);
       return;
     }
-    if (!hear(arrival)) return;
+    if (!speaks()) return;
   }
 }
 
@@ -122,11 +119,11 @@ bool Worker::tell_if_due() {
   if (given == told_ && now_ns < next_tell_ns_) return true;
   const Command wanted = command_now(now_ns);
   told_ = given;
-  next_tell_ns_ = now_ns + ns(protocol_.keep_alive_s());
+  const Status status = protocol_.tell(wanted, now_ns);
+  next_tell_ns_ = protocol_.tell_again_ns(now_ns);
   // A force has to be taken back as soon as it is too old.
   if (wanted.armed)
     next_tell_ns_ = std::min(next_tell_ns_, wanted.at_ns + ns(options_.watchdog_s) + 1);
-  const Status status = protocol_.tell(wanted, now_ns);
   count();
   return status == Status::ok || status == Status::nothing || lost(status);
 }
@@ -152,7 +149,7 @@ bool Worker::hear(const Arrival& arrival) {
       exchange_.reading.store(reading_);
       break;
     case Heard::fault:
-      say_failure(protocol_.fault_text());
+      exchange_.lost.begin().add(options_.name).add(": ").add(protocol_.fault_text()).publish();
       ++reading_.failures;
       exchange_.reading.store(reading_);
       break;
@@ -160,13 +157,6 @@ bool Worker::hear(const Arrival& arrival) {
       return lost(protocol_.fault_text());
   }
   return true;
-}
-
-/// Once, however often the device says it: texts are read while the next ones are written.
-void Worker::say_failure(std::string_view what) {
-  if (what.data() == said_.data() && what.size() == said_.size()) return;
-  said_ = what;
-  exchange_.lost.begin().add(options_.name).add(": ").add(what).publish();
 }
 
 /// False: it is lost.

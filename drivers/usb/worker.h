@@ -47,7 +47,6 @@ class Worker final : private Words {
   bool tell_if_due();
   Command command_now(std::int64_t now_ns);
   bool hear(const Arrival& arrival);
-  void say_failure(std::string_view what);
   bool speaks();
   bool takes_commands();
   bool lost(std::string_view why, std::int64_t milliseconds = -1);
@@ -70,7 +69,6 @@ class Worker final : private Words {
   std::uint64_t told_ = 0;  ///< how many commands the loop had given when one was told last
   std::int64_t next_tell_ns_ = 0;
   std::int64_t heard_ns_ = 0;  ///< when the last sample came
-  std::string_view said_{};    ///< the failure that was told last
 
   // of all connections
   std::uint64_t replaced_before_ = 0, skipped_before_ = 0;

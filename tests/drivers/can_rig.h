@@ -243,7 +243,7 @@ class CanRig {
 
   double motor_Nm(std::size_t axis = 0) { return drives_.drive(axis).torque_Nm(); }
   control::Mode mode() const { return cycle_.output().mode; }
-  std::string fault_text() const { return std::string(device_.fault_text()); }
+  std::string fault_text() const { return device_.fault_text(); }
   EmulatedRig& drives() { return drives_; }
   can::CanDevice& device() { return device_; }
   daemon::Cycle& cycle() { return cycle_; }
@@ -318,7 +318,7 @@ class CanRig {
       rig_.waiting_ = false;
       rig_.device_.stop();
     }
-    std::string_view fault_text() const noexcept override { return rig_.device_.fault_text(); }
+    std::string fault_text() const override { return rig_.device_.fault_text(); }
 
    private:
     CanRig& rig_;

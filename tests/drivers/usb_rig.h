@@ -73,8 +73,8 @@ class UsbRig {
   control::Mode mode() const { return cycle_.output().mode; }
   bool enabled() const { return mode() == control::Mode::enabled; }
   bool faulted() const { return mode() == control::Mode::fault; }
-  std::string fault_text() const { return std::string(device_.fault_text()); }
-  std::string status_text() const { return std::string(device_.status_text()); }
+  std::string fault_text() const { return device_.fault_text(); }
+  std::string status_text() const { return device_.status_text(); }
   /// The largest torque that a motor makes now.
   double torque() const {
     double most = 0;

@@ -119,6 +119,8 @@ constexpr std::size_t kOnTheWay = 8;
 
 usb::DeviceOptions options_of(std::size_t axes) {
   usb::DeviceOptions options{.name = "fuzz", .kind = usb::Kind::openffboard};
+  options.arrival_age_s = 0.003;
+  options.worst_sample_age_s = 0.02;
   for (std::size_t i = 0; i < axes; ++i)
     options.axes.push_back({.counts_per_unit = 65536 * 360.0 / 900 / (2 * std::numbers::pi)});
   options.openffboard = {.full_torque_Nm = kFull_Nm, .dead_man_s = kDeadMan_s};

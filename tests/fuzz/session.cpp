@@ -135,7 +135,7 @@ class Ticks {
     must(!(drive_.silent() && drive_.armed()), "not silent while it is armed");
     must(std::isfinite(drive_.counts()), "a position is a number");
     must(std::isfinite(drive_.carried_Nm()), "a torque is a number");
-    must(!drive_.failed() || !text_.view().empty(), "a failure has words");
+    must(!drive_.failed() || !text_.text().empty(), "a failure has words");
   }
   void arm(bool wanted) {
     wanted_ = wanted;

@@ -6,6 +6,7 @@
 #include <cerrno>
 
 #include "drivers/usb/this_host.h"
+#include "tests/support/held_resources.h"
 #include "tests/umockdev/devices.h"
 
 namespace hapticd::test {
@@ -225,6 +226,15 @@ TEST_F(Bulk, ClosingEndsWhatIsUnderWayAndGivesTheInterfaceToTheKernelAgain) {
               ElementsAre("claim 0", "discard", "discard", "discard", "release 0", "attach 0"));
 }
 
+/// The kernel's driver would wait for it, seconds for each question.
+TEST_F(Bulk, ADeviceThatDoesNotAnswerIsNotGivenBack) {
+  open();
+  usbfs_.hang();
+  port_.reset();
+  EXPECT_EQ(logged("release 0"), 1U);
+  EXPECT_EQ(logged("attach 0"), 0U);
+}
+
 TEST_F(Bulk, ClosingComesToAnEndWhereTransfersDoNot) {
   open();
   usbfs_.ignore_cancelling();
@@ -239,6 +249,21 @@ TEST_F(Bulk, OpensAgainAfterItWasClosed) {
   usbfs_.say({5});
   EXPECT_EQ(received(), Bytes{5});
   EXPECT_EQ(logged("claim 0"), 2U);
+}
+
+TEST_F(Bulk, OpenedAThousandTimesItLeavesNoDescriptorAndNoMemory) {
+  constexpr std::size_t kTimes = 1000, kBytesEach = 32;
+  const auto open_and_close = [&] {
+    open();
+    port_.reset();
+    usbfs_.forget();
+  };
+  for (int i = 0; i < 20; ++i) open_and_close();
+  const Held before = held();
+  for (std::size_t i = 0; i < kTimes; ++i) open_and_close();
+  const Held after = held();
+  EXPECT_EQ(after.descriptors, before.descriptors);
+  EXPECT_LE(after.heap_bytes, before.heap_bytes + kBytesEach * kTimes);
 }
 
 TEST_F(Bulk, AnInterfaceThatAnotherProgramHasIsRefusedWithWords) {

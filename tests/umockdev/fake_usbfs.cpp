@@ -115,6 +115,13 @@ std::vector<std::string> FakeUsbfs::log() {
   return log_;
 }
 
+void FakeUsbfs::forget() {
+  const std::lock_guard lock(mutex_);
+  log_.clear();
+  sent_.clear();
+  requests_.clear();
+}
+
 // -- the kernel
 
 gboolean FakeUsbfs::called(UMockdevIoctlBase*, UMockdevIoctlClient* client, FakeUsbfs* self) {
@@ -214,6 +221,7 @@ void FakeUsbfs::submit_control(usbdevfs_urb* urb) {
                          .data = {},
                          .wanted = word_at(bytes + 6)};
   if (!in) request.data.assign(bytes + 8, bytes + urb->buffer_length);
+  if (hangs_) return out_.push_back(urb);
   const auto reply = answer(request);
   urb->status = reply ? 0 : -EPIPE;
   const std::size_t size = !reply ? 0

@@ -44,6 +44,7 @@ class FakeUsbfs {
   void hold_out(bool hold);                       ///< OUT transfers stay under way
   void end_out(int status = 0);                   ///< the one that is held
   void unplug(int status);                        ///< of what is under way
+  void hang() { hangs_ = true; }                  ///< control requests stay under way
   void ignore_cancelling() { ignores_cancelling_ = true; }
   void claimed_by_another() { claimed_ = true; }
   /// Answers control requests: bytes, or nothing for a stall. Without: all are taken, and give nothing.
@@ -54,7 +55,8 @@ class FakeUsbfs {
   std::vector<Bytes> sent();
   std::vector<ControlRequest> requests();
   std::vector<std::string>
-  log();  ///< "claim 0", "release 0", "attach 0", "clear halt 81", "discard"
+  log();          ///< "claim 0", "release 0", "attach 0", "clear halt 81", "discard"
+  void forget();  ///< what came so far
 
  private:
   static gboolean called(UMockdevIoctlBase*, UMockdevIoctlClient* client, FakeUsbfs* self);
@@ -76,7 +78,8 @@ class FakeUsbfs {
   std::vector<Bytes> sent_;
   std::vector<ControlRequest> requests_;
   std::vector<std::string> log_;
-  bool hold_out_ = false, unplugged_ = false, ignores_cancelling_ = false, claimed_ = false;
+  bool hold_out_ = false, unplugged_ = false, ignores_cancelling_ = false, claimed_ = false,
+       hangs_ = false;
 };
 
 inline constexpr std::size_t kPacketBytes = 64;

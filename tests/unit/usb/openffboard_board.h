@@ -175,7 +175,9 @@ class FakeBoard {
   }
 
   Report gamepad() const {
-    Report report{1};
+    Report report;
+    report.reserve(48);
+    report.push_back(1);
     report.resize(9);
     for (std::size_t i = 0; i < 8; ++i) {
       const bool is_wide = build.wide && i < static_cast<std::size_t>(build.axes);

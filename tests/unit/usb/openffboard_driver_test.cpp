@@ -210,10 +210,50 @@ TEST(OpenFfboardDriver, DisarmingEndsTheForceAtOnceAndStaysOff) {
 }
 
 TEST(OpenFfboardDriver, KeepsAliveInTime) {
+  for (const double dead_man_s : {kDeadMan_s, 0.012}) {
+    auto options = board_options();
+    options.openffboard.dead_man_s = dead_man_s;
+    BoardRig rig({}, options);
+    ASSERT_TRUE(rig.open());
+    const std::int64_t now_ns = rig.board.now_ns;
+    EXPECT_GT(rig.protocol->tell_again_ns(now_ns), now_ns);
+    EXPECT_LE(rig.protocol->tell_again_ns(now_ns), now_ns + std::llround(1e9 * dead_man_s / 3));
+  }
+}
+
+/// It tells its position when that changes; else its answers say that it has not. Told as by the device's thread.
+TEST(OpenFfboardDriver, SamplesAreYoungEnoughHoweverItMoves) {
+  for (const bool armed : {false, true})
+    for (const double age_s : {0.0065, 0.008, 0.012}) {
+      auto options = board_options();
+      options.worst_sample_age_s = age_s;
+      BoardRig rig({}, options);
+      ASSERT_TRUE(rig.open()) << rig.why();
+      armed ? rig.arm() : rig.wait_for_position();
+      std::int64_t last_ns = rig.sample_ns, most_ns = 0;
+      for (int i = 0; i < 3000; ++i) {
+        if (i % 97 == 0 || i % 503 < 20) ++rig.board.position[0];
+        const double effort = armed ? 0.001 * (i % 1000) : 0;
+        const std::int64_t now_ns = rig.board.now_ns;
+        ASSERT_EQ(rig.protocol->tell({.effort = {effort}, .at_ns = now_ns, .armed = armed}, now_ns),
+                  usb::Status::ok);
+        rig.hear(std::min(now_ns + kFrame_ns, rig.protocol->tell_again_ns(now_ns)));
+        if (rig.sample_ns == last_ns) continue;
+        most_ns = std::max(most_ns, rig.sample_ns - last_ns);
+        last_ns = rig.sample_ns;
+      }
+      EXPECT_LE(most_ns, std::llround(1e9 * (age_s - options.arrival_age_s)))
+          << age_s << (armed ? ", with forces" : "");
+      EXPECT_EQ(rig.faults, 0);
+    }
+}
+
+TEST(OpenFfboardDriver, BoardThatAnswersTooSlowlyForTheAgeOfItsSamplesIsRefused) {
   BoardRig rig;
-  EXPECT_LE(rig.protocol->keep_alive_s(), kDeadMan_s / 3);
-  rig.options.openffboard.dead_man_s = 0.012;
-  EXPECT_LE(rig.protocol->keep_alive_s(), 0.004);
+  rig.board.answer_delay_ns = 6 * kFrame_ns;
+  EXPECT_FALSE(rig.open());
+  EXPECT_NE(rig.why().find("raise usb.max_age_s"), std::string::npos) << rig.why();
+  EXPECT_FALSE(rig.board.opened);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ inline constexpr int kHalf = 16384;  // of 32767, rounded half away from zero
 inline usb::DeviceOptions board_options(std::size_t axes = 1,
                                         double counts_per_turn = 65536 * 360.0 / 900) {
   usb::DeviceOptions options{.name = "board", .kind = usb::Kind::openffboard};
+  options.arrival_age_s = 0.003;
+  options.worst_sample_age_s = 0.008;
   for (std::size_t i = 0; i < axes; ++i)
     options.axes.push_back({.counts_per_unit = counts_per_turn / (2 * std::numbers::pi)});
   options.openffboard = {.full_torque_Nm = kFull_Nm, .dead_man_s = kDeadMan_s};

@@ -3,13 +3,18 @@
 #include <gmock/gmock.h>
 #include <grp.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <filesystem>
 
 #include "drivers/usb/choose.h"
 #include "drivers/usb/node_access.h"
+#include "drivers/usb/this_host.h"
 #include "tests/unit/usb/device_tree.h"
 
 namespace hapticd::test {
@@ -77,6 +82,48 @@ TEST(Scan, ANodeThatIsNotThereIsAReason) {
 TEST(Scan, AMachineWithoutUsbHasNoCandidates) {
   const DeviceTree tree;
   EXPECT_THAT(usb::scan(tree.roots()), IsEmpty());
+}
+
+/// Nodes that were opened in a directory and below, once it is watched.
+class OpenedNodes {
+ public:
+  explicit OpenedNodes(const std::string& root) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+      if (entry.is_regular_file()) {
+        EXPECT_GE(::inotify_add_watch(watch_, entry.path().c_str(), IN_OPEN), 0);
+      }
+  }
+  OpenedNodes(const OpenedNodes&) = delete;
+  OpenedNodes& operator=(const OpenedNodes&) = delete;
+  ~OpenedNodes() { ::close(watch_); }
+  std::size_t count() const {
+    alignas(inotify_event) std::array<char, 4096> events{};
+    const ssize_t got = ::read(watch_, events.data(), events.size());
+    return got < 0 ? 0 : static_cast<std::size_t>(got) / sizeof(inotify_event);
+  }
+
+ private:
+  int watch_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+};
+
+/// A node that is opened, be it of another device, can stop what a loop is doing with it, or wake it.
+TEST(Scan, NoNodeIsOpenedThatIsNotTheOneThatIsMeant) {
+  const DeviceTree tree;
+  tree.add(kFalconInTree);
+  tree.add(kFalconInTree, {.interface_class = "ff", .driver = ""}, {{"81", "02"}, {"02", "02"}});
+  tree.add(TreeUsb{});
+  tree.add(TreeUsb{}, {}, {{}});
+  tree.add_hid(DeviceTree::directory(TreeUsb{}, 0), "hidraw0", vendor_descriptor(0xab));
+  const OpenedNodes opened(tree.at("dev"));
+  EXPECT_THAT(usb::scan(tree.roots()), SizeIs(2));
+  const auto host = usb::host_at(tree.roots());
+  EXPECT_FALSE(host->open_bulk({.vendor = 0x0403, .product = 0x6001}, 0x81, 0x02));
+  for (const auto transport : {usb::Transport::hidapi, usb::Transport::libusb})
+    EXPECT_FALSE(host->open_hid({.vendor = 1, .product = 2, .transport = transport}));
+  EXPECT_EQ(opened.count(), 0U);
+  // The one that is meant is: this file is no device, but it was tried.
+  EXPECT_FALSE(host->open_bulk({.vendor = 0x0403, .product = 0xcb48}, 0x81, 0x02));
+  EXPECT_EQ(opened.count(), 1U);
 }
 
 TEST(NodeAccess, ARightThatIsMissingNamesOwnerModeAndTheRule) {

@@ -23,7 +23,7 @@ render() {
   shift 6
   rm -f /run/usb.hrec
   emulate "$config" "$@"
-  sleep 1
+  sleep 0.3
   code=0
   hapticd --config "$config" --duration "$seconds" --require-realtime --socket /run/usb.sock > "$scratch/summary" 2> "$scratch/log" || code=$?
   alive=1
@@ -41,9 +41,9 @@ render() {
 }
 
 # The hand presses with 0.5 N, and the wall bears it; the wheel's rim is 0.1 m from its axis.
-render usb_report_hidapi usb_report 4 board.x.force 0.48 0.52
-render usb_report_libusb usb_report_libusb 4 board.x.force 0.48 0.52
-render uhid_report usb_report 4 board.x.force 0.48 0.52 --uhid
-render usb_openffboard usb_openffboard 4 wheel.turn.delivered 0.047 0.053
+render usb_report_hidapi usb_report 1.5 board.x.force 0.48 0.52
+render usb_report_libusb usb_report_libusb 1.5 board.x.force 0.48 0.52
+render uhid_report usb_report 1.5 board.x.force 0.48 0.52 --uhid
+render usb_openffboard usb_openffboard 3 wheel.turn.delivered 0.047 0.053
 # The hand's 200 N/m from 20 mm and the coupling's 60 N/m from 10 mm on are in balance at 17.69 mm, with 0.46 N.
 render usb_falcon usb_falcon 9 falcon.z.force 0.44 0.48
