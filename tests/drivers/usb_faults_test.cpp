@@ -15,7 +15,7 @@ using control::Mode;
 constexpr int kStaleTicks = 3 + 4 + 1;
 
 #ifdef HAPTICD_SANITIZED
-constexpr std::int64_t kEvery_ms = 71;
+constexpr std::int64_t kEvery_ms = 211;
 #else
 constexpr std::int64_t kEvery_ms = 17;
 #endif

@@ -73,16 +73,20 @@ TEST(FalconSetUp, WhatCannotBeLoadedIsRefusedWithTheReason) {
   };
   auto rig = empty_falcon([](auto&) {}, "{}");
   EXPECT_NE(refusal(*rig).find("give falcon.firmware"), std::string::npos) << refusal(*rig);
-  rig = empty_falcon([](auto& board) {
-    board.wrong_echo_chunk = 5;
-    board.wrong_echo_times = 1000;
-  });
+  const std::string twice = "{firmware: " + firmware_file() + ", upload_tries: 2}";
+  rig = empty_falcon(
+      [](auto& board) {
+        board.wrong_echo_chunk = 5;
+        board.wrong_echo_times = 1000;
+      },
+      twice);
   EXPECT_NE(refusal(*rig).find("does not send back"), std::string::npos) << refusal(*rig);
-  rig = empty_falcon([](auto& board) { board.deaf_greetings = 100000; });
+  rig = empty_falcon([](auto& board) { board.deaf_greetings = 100000; }, twice);
   EXPECT_NE(refusal(*rig).find("mains adaptor"), std::string::npos) << refusal(*rig);
   rig = empty_falcon([](auto&) {}, "{firmware: /nowhere.bin}");
   EXPECT_NE(refusal(*rig).find("/nowhere.bin: No such file"), std::string::npos) << refusal(*rig);
-  rig = empty_falcon([](auto& board) { board.firmware[100] ^= 1; });  // the file is another one
+  // The file is another one.
+  rig = empty_falcon([](auto& board) { board.firmware[100] ^= 1; }, twice);
   EXPECT_NE(refusal(*rig).find("does not answer after the upload"), std::string::npos)
       << refusal(*rig);
 }

@@ -261,6 +261,9 @@ TEST_F(Bulk, OpenedAThousandTimesItLeavesNoDescriptorAndNoMemory) {
   for (int i = 0; i < 20; ++i) open_and_close();
   const Held before = held();
   for (std::size_t i = 0; i < kTimes; ++i) open_and_close();
+  // umockdev's own end of a node is closed a little later.
+  for (int i = 0; i < 200 && held().descriptors > before.descriptors; ++i)
+    host_->wait(now() + 10'000'000);
   const Held after = held();
   EXPECT_EQ(after.descriptors, before.descriptors);
   EXPECT_LE(after.heap_bytes, before.heap_bytes + kBytesEach * kTimes);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# First process of the guest: mounts, loads modules, runs guest/[0-9]*.sh in order and tells the verdict twice, in the
+# First process of the guest: mounts, loads modules, runs the scripts of a suite in order and tells the verdict twice, in the
 # last line and to isa-debug-exit. Whatever ends before that is a failure: a panic or a power-off end QEMU with 0.
 # It must not end by itself, so no `set -e`.
 export PATH=/usr/sbin:/usr/bin:/bin HOME=/root LC_ALL=C
@@ -47,7 +47,7 @@ while read -r module; do
 done < /etc/modules
 only=$(sed -n 's/.*vm_only=\([^ ]*\).*/\1/p' /proc/cmdline)
 suite=$(sed -n 's/.*vm_suite=\([^ ]*\).*/\1/p' /proc/cmdline)
-for script in "/vm/guest/${suite:+$suite/}"[0-9]*.sh; do
+for script in "/vm/guest/$suite"/[0-9]*.sh; do
   case $script in *"$only"*) run_check "$script" ;; esac
 done
 

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation and runs guest/*.sh in it, then once more for each of
-# guest/usb/ and guest/beside/. Prints one line a check.
+# run.sh: boots a PREEMPT_RT kernel in QEMU's software emulation for each suite, which is a directory of guest/, and runs
+# its scripts there. Prints one line a check.
 # Exit: 0 all passed, 1 not so, 64 usage, 69 the kernel cannot be downloaded, 77 skipped: something is not installed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 usage() {
   cat << 'END'
-usage: tests/vm/run.sh [--suite a|usb|beside] [--build DIR] [--only TEXT] [PROGRAM...]
-  --suite a       CAN and the loop's punctuality, in guest time alone
+usage: tests/vm/run.sh [--suite can|usb|unplug|beside] [--build DIR] [--only TEXT] [PROGRAM...]
+  --suite can     CAN and the loop's punctuality, in guest time alone
   --suite usb     devices on USB, likewise
+  --suite unplug  these pulled out and plugged in again, likewise
   --suite beside  a device of QEMU with a program beside it, in the host's time (without --suite: all)
   --build DIR   where hapticd and hapticctl were built (build)
   --only TEXT   only the scripts of tests/vm/guest with TEXT in their name
@@ -20,7 +21,7 @@ END
 
 build=build
 only=
-suites=(a usb beside)
+suites=(can usb unplug beside)
 programs=()
 while [ $# -gt 0 ]; do
   case $1 in
@@ -29,7 +30,7 @@ while [ $# -gt 0 ]; do
       case $1 in
         --suite)
           case $2 in
-            a | usb | beside) suites=("$2") ;;
+            can | usb | unplug | beside) suites=("$2") ;;
             *) echo "tests/vm/run.sh: no suite $2" >&2 && exit 64 ;;
           esac
           ;;
@@ -82,17 +83,18 @@ must_not_pass 33 "$good" 'and more'
 must_not_pass 33 'hapticd-vm: passed, 0 checks'
 
 # Why each option is there: README.md. Never KVM, not even as a choice.
-boot() { # boot <serial log> <words for the kernel> <option>...
+boot() { # boot <suite> <option>...
   timeout 900 qemu-system-x86_64 -accel tcg,thread=single -cpu max -smp 1 -m 1024 -seed 1 -nographic -no-reboot -nodefaults \
-    -serial stdio -monitor none -device isa-debug-exit,iobase=0xf4,iosize=0x04 "${@:3}" \
+    -serial stdio -monitor none -device isa-debug-exit,iobase=0xf4,iosize=0x04 "${@:2}" \
     -kernel "$kernel_directory/vmlinux" -initrd build/vm/initramfs \
-    -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr $2${only:+ vm_only=$only}" < /dev/null > "$1" 2>&1
+    -append "console=ttyS0 panic=-1 quiet mitigations=off nokaslr vm_suite=$1${only:+ vm_only=$only}" < /dev/null > "build/vm/$1.log" 2>&1
 }
 readonly guest_time=(-icount "shift=0,sleep=off" -rtc "base=2026-01-01T00:00:00,clock=vm")
-boot_a() {
-  boot build/vm/serial.log '' "${guest_time[@]}" -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb
+boot_can() {
+  boot can "${guest_time[@]}" -object can-bus,id=cb -device kvaser_pci,canbus=cb -device kvaser_pci,canbus=cb
 }
-boot_usb() { boot build/vm/usb.log vm_suite=usb "${guest_time[@]}"; }
+boot_usb() { boot usb "${guest_time[@]}"; }
+boot_unplug() { boot unplug "${guest_time[@]}"; }
 # A Falcon's board, to which QEMU's bridge has a line.
 boot_beside() {
   local code=0 line=build/vm/line board
@@ -100,7 +102,7 @@ boot_beside() {
   rm -f "$line"
   "$build/tests/falcon_line" "$line" tests/vm/configs/usb_serial.yaml build/vm/falcon.bin > build/vm/falcon_line.json &
   board=$!
-  boot build/vm/beside.log vm_suite=beside -device piix3-usb-uhci -chardev "socket,id=line,path=$line,server=on,wait=off" \
+  boot beside -device piix3-usb-uhci -chardev "socket,id=line,path=$line,server=on,wait=off" \
     -device usb-serial,chardev=line || code=$?
   wait "$board" || true
   echo "falcon_line: $(cat build/vm/falcon_line.json)"
@@ -109,21 +111,16 @@ boot_beside() {
 
 # chosen <suite>: --only leaves some of it.
 chosen() {
-  local script directory=tests/vm/guest
-  [ "$1" = a ] || directory+=/$1
-  for script in "$directory"/[0-9]*.sh; do
+  local script
+  for script in "tests/vm/guest/$1"/[0-9]*.sh; do
     case $script in *"$only"*) return ;; esac
   done
   return 1
 }
 
-# log_of <suite>
-log_of() { if [ "$1" = a ]; then echo build/vm/serial.log; else echo "build/vm/$1.log"; fi; }
-
 # judge <suite>: boots it, prints its checks and its verdict.
 judge() {
-  local suite=$1 started=$SECONDS code=0 log why took
-  log=$(log_of "$suite")
+  local suite=$1 started=$SECONDS code=0 log=build/vm/$1.log why took
   "boot_$suite" || code=$?
   tr -d '\r' < "$log" | grep -aE '^(ok|FAILED|hapticd-vm:) ' || true
   took="$((SECONDS - started)) s"

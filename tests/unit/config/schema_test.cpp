@@ -64,6 +64,20 @@ std::vector<Place> all_places() {
   return places;
 }
 
+/// Under a sanitizer all of them take minutes, and most are read by the same code.
+#ifdef HAPTICD_SANITIZED
+constexpr int kOneIn = 5;
+#else
+constexpr int kOneIn = 1;
+#endif
+
+std::vector<Place> sampled_places() {
+  std::vector<Place> places = all_places();
+  std::size_t next = 0;
+  std::erase_if(places, [&](const Place&) { return next++ % kOneIn != 0; });
+  return places;
+}
+
 bool accepts(const json& config) {
   return read_text(config.dump(), "j").has_value();
 }
@@ -115,7 +129,7 @@ TEST(Schema, FullConfigHasEveryKeyAndIsAccepted) {
 }
 
 TEST(Schema, RequiredIsWhatTheReaderRequires) {
-  for (const Place& place : all_places()) {
+  for (const Place& place : sampled_places()) {
     if (place.is_kind) continue;
     EXPECT_EQ(accepts(without(place)), !place.required) << place.where;
     EXPECT_EQ(place.schema.contains("default"), !place.required) << place.where;
@@ -123,7 +137,7 @@ TEST(Schema, RequiredIsWhatTheReaderRequires) {
 }
 
 TEST(Schema, EveryDefaultIsWhatTheReaderTakesForAKeyLeftOut) {
-  for (const Place& place : all_places()) {
+  for (const Place& place : sampled_places()) {
     if (place.required || place.is_kind) continue;
     const auto left_out = read_text(without(place).dump(), "j");
     const auto written = read_text(with(place, place.schema["default"]).dump(), "j");
@@ -147,7 +161,7 @@ json beyond(const json& schema, const json& limit, int sign) {
 
 TEST(Schema, EveryRangeIsTheReaders) {
   int numbers = 0;
-  for (const Place& place : all_places()) {
+  for (const Place& place : sampled_places()) {
     json schema = place.schema;
     json::json_pointer where = place.where;
     while (type_of(schema) == "array") {
@@ -168,7 +182,7 @@ TEST(Schema, EveryRangeIsTheReaders) {
         << where;
     EXPECT_FALSE(accepts(with(number, beyond(schema, min, -1)))) << where;
   }
-  EXPECT_GT(numbers, 150);
+  EXPECT_GT(numbers, 150 / kOneIn);
 }
 
 TEST(Schema, EveryTypeIsTheReaders) {
@@ -177,7 +191,7 @@ TEST(Schema, EveryTypeIsTheReaders) {
       {"array", json::parse("[[[]]]")},
       {"string", "no such word"},
       {"boolean", true}};
-  for (const Place& place : all_places()) {
+  for (const Place& place : sampled_places()) {
     for (const auto& [type, sample] : samples) {
       if (type == "boolean" && type_of(place.schema) == "boolean") continue;
       if (type == "string" && type_of(place.schema) == "string" && !place.schema.contains("enum") &&
@@ -199,7 +213,7 @@ TEST(Schema, EveryWordOfAnEnumerationIsTaken) {
 }
 
 TEST(Schema, EveryListLengthIsTheReaders) {
-  for (const Place& place : all_places()) {
+  for (const Place& place : sampled_places()) {
     if (type_of(place.schema) != "array") continue;
     const json item = place.config[place.where][0];
     const auto list = [&](std::size_t count) { return with(place, json(count, item)); };

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Two emulated SJA1000 controllers on one bus: the kernel's real driver, with bit rate, queue, states and counters.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 for interface in can0 can1; do
   $ip link set "$interface" type can bitrate 1000000 restart-ms 100

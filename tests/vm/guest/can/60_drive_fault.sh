@@ -1,7 +1,7 @@
 #!/bin/sh
 # A drive that fails under force: the fault names it and its cause, no force is left, and the daemon says so when it ends.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 mkdir -p /run/lock
 for bus in vcan0 vcan1 vcan2; do vcan_up "$bus"; done

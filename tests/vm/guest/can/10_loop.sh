@@ -1,7 +1,7 @@
 #!/bin/sh
 # The servo loop on a real-time kernel: no missed tick, and as punctual as cyclictest in the same boot.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 case $(uname -v) in
   *PREEMPT_RT*) ok kernel "$(uname -r) PREEMPT_RT" ;;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # A certified wall over CAN: hapticd against three drives that hapticctl emulates on virtual buses.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 config=/vm/configs/three_odrives.yaml
 if [ ! -e "$config" ]; then

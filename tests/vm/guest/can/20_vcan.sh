@@ -1,7 +1,7 @@
 #!/bin/sh
 # The driver against the kernel's CAN: a virtual interface, classic and FD.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 # frame <check> <what is sent> <what is heard>
 frame() {

@@ -1,8 +1,8 @@
 #!/bin/sh
 # What goes wrong on a bus, made on a virtual one. First that each fault really is made: a test of how the driver takes a
 # fault is worth nothing otherwise.
-# shellcheck source=lib.sh
-. "${0%/*}/lib.sh"
+# shellcheck source=../lib.sh
+. "${0%/*}/../lib.sh"
 
 # 40 frames as quickly as the shell can; how many were heard and how many could not be sent.
 burst() {
