@@ -69,8 +69,12 @@ double arrival_age_s(const UsbPlace& place) {
   return place.keys.arrival_age_s.value_or(place.kind == usb::Kind::openffboard ? 3e-3 : 1e-3);
 }
 
+/// By hidapi a report is found only once the one that goes out has gone, a frame later.
 double max_age_s(const UsbPlace& place) {
-  return place.keys.max_age_s.value_or(place.kind == usb::Kind::openffboard ? 8e-3 : 2.5e-3);
+  const bool waits =
+      place.kind == usb::Kind::hid_report && usb_transport(place) == usb::Transport::hidapi;
+  const double usual_s = waits ? 3.5e-3 : 2.5e-3;
+  return place.keys.max_age_s.value_or(place.kind == usb::Kind::openffboard ? 8e-3 : usual_s);
 }
 
 double silence_s(const UsbPlace& place) {

@@ -40,7 +40,8 @@ void describe(V& v, UsbDevice& s) {
   v.optional(
       "max_age_s", s.max_age_s,
       {.about = "an older sample is missing; at least arrival_age_s and 1 ms, in which the "
-                "next one comes; null: 0.0025 s; an openffboard, which has to be asked while "
+                "next one comes; null: 0.0025 s; with transport: hidapi, where a report waits for "
+                "the one that goes out, 0.0035 s; an openffboard, which has to be asked while "
                 "nothing moves: 0.008 s",
        .min = 0,
        .max = 0.1,

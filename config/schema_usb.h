@@ -18,7 +18,7 @@ struct UsbDevice {
   UsbTransport transport = UsbTransport::hidapi;  ///< HID
   int reads = 2;                                  ///< libusb
   std::optional<double> arrival_age_s{};          ///< default: 1 ms; of an openffboard 3 ms
-  std::optional<double> max_age_s{};              ///< default: 2.5 ms; of an openffboard 8 ms
+  std::optional<double> max_age_s{};  ///< default: 2.5 ms; by hidapi 3.5 ms; of an openffboard 8 ms
   std::optional<double> send_s{};  ///< default: 2 ms; of an openffboard 2 ms and 1 ms for each axis
   double drive_delay_s = 1e-4;
   double watchdog_s = 0.02;

@@ -32,10 +32,12 @@ class FaultText {
   }
   void publish() noexcept { shown_.store(text_); }
 
-  /// Any thread but the loop's: it allocates, and begins again while a text is being published.
+  /// Any thread but the loop's: it allocates, and tries again while a text is being published. Empty: there is none, or who
+  /// publishes it does not get to its end.
   std::string text() const {
+    constexpr int kTries = 10'000;
     Text text;
-    while (shown_.count() != 0 && !shown_.load(text)) {
+    for (int i = 0; i < kTries && !shown_.load(text); ++i) {
     }
     return {text.letters.data(), text.size};
   }

@@ -109,8 +109,9 @@ bool HidapiPort::read(int timeout_ms) noexcept {
 /// As many as the kernel keeps: a device that sends without end does not hold this thread.
 void HidapiPort::read_all() noexcept {
   for (std::size_t i = 0; i < usb::ArrivalQueue::kMost && !gone_; ++i) {
+    const std::int64_t before_ns = usb::monotonic_ns();
     if (read(0)) continue;
-    last_look_.looked(usb::monotonic_ns());
+    last_look_.looked(before_ns);
     return;
   }
 }
@@ -145,7 +146,9 @@ Status HidapiPort::send(std::span<const std::uint8_t> bytes) {
   if (gone_) return Status::gone;
   if (bytes.empty() || bytes.size() + before > written_.size()) return Status::failed;
   std::ranges::copy(bytes, written_.begin() + static_cast<std::ptrdiff_t>(before));
+  read_all();
   const std::int64_t begin_ns = usb::monotonic_ns();
+  last_look_.away(begin_ns);
   errno = 0;
   const int wrote = hid_write(device_.get(), written_.data(), bytes.size() + before);
   const int error = errno;
@@ -214,11 +217,11 @@ usb::Opened<usb::Found<usb::HidPort>> open_hidapi(const usb::Selection& selectio
                                                   const usb::Roots& roots, usb::Waker& waker) {
   const auto node = usb::choose_hid_node(selection, roots);
   if (!node) return tl::unexpected(node.error());
-  const std::string what = usb::words(node->about) + ": ";
+  const std::string about = usb::words(node->about), what = about + ": ";
   const auto descriptor = parse_descriptor(node->report_descriptor);
   if (!descriptor) return usb::refused(ExitCode::unavailable, what + descriptor.error().text);
   if (const auto problem = usb::access_problem(node->node))
-    return usb::refused(problem->code, what + problem->text);
+    return tl::unexpected(usb::not_opened(about, node->node, *problem));
   std::string error;
   HidPointer device = open_node(node->node, error);
   if (device == nullptr)

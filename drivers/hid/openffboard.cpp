@@ -19,7 +19,6 @@ constexpr std::int64_t kWayOut_ns = 100 * kMillisecond_ns;
 /// A board that still looks at its positions sends one every 100 ms, or a little later.
 constexpr std::int64_t kPositionsStopped_ns = 150 * kMillisecond_ns;
 constexpr Usage kJoystick = 0x0001'0004;
-constexpr std::uint8_t kGamepadReport = 1, kStateReport = 2;
 
 class OpenFfboard final : public usb::Protocol {
  public:

@@ -1,5 +1,6 @@
 // OpenFFBoard: a board that plays force effects as a gamepad does. Each axis has a constant force whose magnitude follows the
-// loop; the force ends by itself when it has not been started anew for `dead_man_s`, since the board has no watchdog.
+// loop; the force ends by itself when it has not been started anew for `dead_man_s`, since the board has no watchdog. A start
+// that the bus holds up for longer than that plays the last magnitude until the zero behind it is there, 1 to 2 ms.
 //
 // Positions come only when they change. While they do not, the board is asked for something else, and an answer without a
 // position before it means that there is no other position: it may be as old as the board takes to send both, 3 ms at 1 kHz.

@@ -12,7 +12,6 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint8_t kSetEffectReport = 0x01, kConstantForceReport = 0x05;
 constexpr std::uint8_t kOperationReport = 0x0a, kControlReport = 0x0c, kGainReport = 0x0d;
-constexpr std::uint8_t kGamepadReport = 0x01, kStateReport = 0x02;
 constexpr std::uint8_t kConstantForceType = 1, kStart = 1, kStop = 3;
 
 /// The caller knows that it fits.

@@ -93,7 +93,7 @@ std::optional<State> decode_state(std::span<const std::uint8_t> report) noexcept
 
 // -- command channel, report 0xa1. For set-up: each write is answered in the interrupt slot of a position.
 
-inline constexpr std::uint8_t kCommandReport = 0xa1;
+inline constexpr std::uint8_t kGamepadReport = 1, kStateReport = 2, kCommandReport = 0xa1;
 inline constexpr std::size_t kCommandBytes = 25;
 using CommandReport = std::array<std::uint8_t, kCommandBytes>;
 

@@ -16,13 +16,11 @@ constexpr std::int64_t kRefresh_ns = 10 * kMillisecond_ns;  // of a magnitude th
 constexpr std::int64_t kAskSeldom_ns = 2 * kMillisecond_ns;
 constexpr std::int64_t kAskAlways_ns = 50 * kMillisecond_ns;
 constexpr std::int64_t kConfirm_ns = 5 * kMillisecond_ns;
-/// A question may have to wait for a force, and for the next frame.
-constexpr double kAskEarly_s = 2e-3;
 constexpr std::int64_t kTellSoon_ns = kMillisecond_ns / 2, kTellAgain_ns = 5 * kMillisecond_ns;
 /// From the start's being sent to its being with the board: a report before it, and a host that is late. At most a quarter
 /// of the effect's time.
 constexpr std::int64_t kMargin_ns = 4 * kMillisecond_ns;
-constexpr int kMostUnanswered = 20;
+constexpr int kMostUnanswered = 20, kMostOutstanding = 10;
 
 }  // namespace
 
@@ -36,7 +34,8 @@ void Force::begin(const Board& board) {
   outbox_ = {};
   phase_ = Phase::off;
   axes_ = {};
-  enabled_ = was_on_ = ask_by_effect_ = asked_last_ = false;
+  enabled_ = was_on_ = ask_by_effect_ = false;
+  since_other_ = kMostAxes;
   asked_ns_ = 0;
   unanswered_ = outdated_ = 0;
 }
@@ -53,7 +52,8 @@ void Force::is_said(bool on) noexcept {
 }
 
 bool Force::is_answered() noexcept {
-  unanswered_ = std::max(unanswered_ - 1, 0);
+  // Of those that were asked longer ago no answer will come.
+  unanswered_ = std::clamp(unanswered_ - 1, 0, kMostOutstanding);
   if (outdated_ == 0) return true;
   --outdated_;
   return false;
@@ -102,6 +102,9 @@ Status Force::next(usb::Port& port, const usb::Command& command, std::int64_t no
   const bool free = outbox_.is_free(port);
   sent = free;
   if (phase_ == Phase::arming || phase_ == Phase::disarming) {
+    // The zeros first.
+    const bool may_ask = free && step_ >= board_.layout.axes && since_other_ > 0;
+    if (may_ask && now_ns >= ask_ns(sample_ns)) return ask(port, now_ns);
     // Zero in place of a force that waits.
     sent = free || (step_ < board_.layout.axes && outbox_.waiting(port) == step_);
     return sent ? step(port, now_ns) : Status::ok;
@@ -109,10 +112,10 @@ Status Force::next(usb::Port& port, const usb::Command& command, std::int64_t no
   const bool running = phase_ == Phase::running;
   const auto to_start = running ? due_start(now_ns) : std::nullopt;
   const auto due = running ? due_magnitude(command, now_ns) : std::nullopt;
-  // In turn with the others, however long the board takes to answer.
-  const bool their_turn = asked_last_ && (to_start || due);
-  if (free && now_ns >= ask_ns(sample_ns) && !their_turn) return ask(port, now_ns);
-  if (to_start) return free ? start(port, *to_start, now_ns) : Status::ok;
+  // A force waits for one other report at most.
+  const bool forces_first = due && since_other_ < board_.layout.axes;
+  if (free && to_start && !forces_first) return start(port, *to_start, now_ns);
+  if (free && now_ns >= ask_ns(sample_ns) && !forces_first) return ask(port, now_ns);
   const auto axis = free ? due : outbox_.waiting(port);
   sent = running && axis.has_value();
   if (!sent) return Status::ok;
@@ -127,8 +130,10 @@ Status Force::step(usb::Port& port, std::int64_t now_ns) {
   if (status != Status::ok) return status;
   const std::size_t axes = board_.layout.axes;
   const std::size_t steps = phase_ == Phase::arming ? 3 * axes + 1 : 2 * axes + 1;
+  ++since_other_;
   if (++step_ < steps) return status;
   phase_ = phase_ == Phase::arming ? Phase::running : Phase::off;
+  if (phase_ == Phase::running) outdated_ = unanswered_;
   return status;
 }
 
@@ -155,7 +160,7 @@ Status Force::set(usb::Port& port, std::size_t axis) {
 Status Force::start(usb::Port& port, std::size_t axis, std::int64_t now_ns) {
   const Status status = outbox_.send(port, start_effect(board_.effects[axis]));
   if (status == Status::ok) axes_[axis].started_ns = now_ns;
-  asked_last_ = false;
+  since_other_ = 0;
   return status;
 }
 
@@ -169,7 +174,7 @@ Status Force::follow(usb::Port& port, std::size_t axis, std::int16_t magnitude,
   if (status != Status::ok) return status;
   axes_[axis].magnitude = magnitude;
   axes_[axis].sent_ns = now_ns;
-  asked_last_ = false;
+  ++since_other_;
   return status;
 }
 
@@ -178,7 +183,7 @@ Status Force::ask(usb::Port& port, std::int64_t now_ns) {
   // Answers that have not come by now never will.
   if (now_ns - asked_ns_ >= kAskAlways_ns) unanswered_ = outdated_ = 0;
   asked_ns_ = now_ns;
-  asked_last_ = true;
+  since_other_ = 0;
   ask_by_effect_ = phase_ == Phase::running && !enabled_ && !was_on_ && !ask_by_effect_;
   if (ask_by_effect_) return set(port, 0);
   ++unanswered_;
@@ -203,11 +208,16 @@ std::optional<std::size_t> Force::due_start(std::int64_t now_ns) const noexcept 
 /// When the next question is due: so early that its answer, a sample, is there before the last one is too old.
 std::int64_t Force::ask_ns(std::int64_t sample_ns) const noexcept {
   const std::int64_t always_ns = asked_ns_ == 0 ? 0 : asked_ns_ + kAskAlways_ns;
-  if (phase_ == Phase::running && !enabled_) return std::min(always_ns, asked_ns_ + kConfirm_ns);
-  if (unanswered_ >= kMostUnanswered) return always_ns;
-  const double wait_s = most_between_samples_s(options_) - board_.round_trip_s - kAskEarly_s;
+  // It may have to wait for a start, for the forces, and for the next frame.
+  const double early_s = 1e-3 * static_cast<double>(board_.layout.axes + 2);
+  const double wait_s = most_between_samples_s(options_) - board_.round_trip_s - early_s;
   const auto wait_ns = std::max<std::int64_t>(0, std::llround(1e9 * wait_s));
-  return std::min(always_ns, std::max(sample_ns + wait_ns, asked_ns_ + kAskSeldom_ns));
+  const std::int64_t for_age_ns = std::max(sample_ns + wait_ns, asked_ns_ + kAskSeldom_ns);
+  const std::int64_t to_confirm_ns = asked_ns_ + kConfirm_ns;
+  const bool answers = unanswered_ < kMostUnanswered,
+             confirmed = phase_ != Phase::running || enabled_;
+  return std::min(
+      {always_ns, answers ? for_age_ns : always_ns, confirmed ? always_ns : to_confirm_ns});
 }
 
 /// A question that found the port taken is tried again soon.

@@ -81,7 +81,8 @@ class Force {
   bool enabled_ = false, was_on_ = false;
   std::int64_t asked_ns_ = 0;
   int unanswered_ = 0, outdated_ = 0;  ///< questions; of these: from before forces were switched on
-  bool ask_by_effect_ = false, asked_last_ = false;
+  bool ask_by_effect_ = false;
+  std::size_t since_other_ = kMostAxes;  ///< reports since the last that was a question or a start
 };
 
 }  // namespace hapticd::hid::openffboard

@@ -9,11 +9,12 @@
 namespace hapticd::hid::openffboard {
 namespace {
 
+constexpr std::uint8_t kSetEffectReport = 1;
+
 constexpr Usage kFirstButton = 0x0009'0001, kDirectionEnable = 0x000f'0056;
 /// X Y Z RX RY RZ dial slider, in the order of report 1.
 constexpr std::array<Usage, 8> kAxisUsages{0x0001'0030, 0x0001'0031, 0x0001'0032, 0x0001'0033,
                                            0x0001'0034, 0x0001'0035, 0x0001'0037, 0x0001'0036};
-constexpr std::uint8_t kGamepadReport = 1, kSetEffectReport = 1;
 constexpr std::uint32_t kEnableByte = 13;  // of Set Effect: axes, and behind them the direction
 constexpr std::size_t kMostAnalogue = 6;
 

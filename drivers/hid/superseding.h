@@ -6,14 +6,14 @@
 
 namespace hapticd::hid {
 
-/// All but the answers of OpenFFBoard's command channel, which is known by id and length.
+/// Of an OpenFFBoard, known by its command channel, its positions alone.
 inline usb::Superseding superseding_of(const ReportDescriptor& descriptor) noexcept {
   constexpr std::uint8_t kId = openffboard::kCommandReport;
   const bool has_commands =
       descriptor.report_bytes(ReportKind::input, kId) == openffboard::kCommandBytes &&
       descriptor.report_bytes(ReportKind::output, kId) == openffboard::kCommandBytes;
   usb::Superseding superseding{.newest_only = true, .numbered = descriptor.numbered};
-  if (has_commands) superseding.all_of_id = kId;
+  if (has_commands) superseding.only_of_id = openffboard::kGamepadReport;
   return superseding;
 }
 

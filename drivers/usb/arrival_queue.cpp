@@ -13,7 +13,8 @@ bool ArrivalQueue::supersedes(std::span<const std::uint8_t> bytes,
                               const Slot& older) const noexcept {
   if (!superseding_.newest_only || older.order == 0) return false;
   if (!superseding_.numbered) return true;
-  return bytes.front() == older.bytes.front() && bytes.front() != superseding_.all_of_id;
+  return bytes.front() == older.bytes.front() &&
+         bytes.front() == superseding_.only_of_id.value_or(bytes.front());
 }
 
 ArrivalQueue::Slot* ArrivalQueue::oldest() noexcept {

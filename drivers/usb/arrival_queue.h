@@ -1,8 +1,8 @@
 // What came from a device and was not handed out yet. Never grows: memory is that of the start.
 //
 // A report that says where the device is makes those before it worthless: were each handed out, a thread that fell behind
-// once would follow at that distance for ever. So of reports with the same id only the newest waits, but for those that
-// answer a question, each of which counts.
+// once would follow at that distance for ever. So of reports with the same id only the newest waits, but for those that do
+// not say where it is, each of which counts.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace hapticd::usb {
 
 /// What may take the place of what.
 struct Superseding {
-  bool newest_only = false;                 ///< false: all count
-  bool numbered = false;                    ///< byte 0 is an id; else all are of one kind
-  std::optional<std::uint8_t> all_of_id{};  ///< of this id each counts
+  bool newest_only = false;                  ///< false: all count
+  bool numbered = false;                     ///< byte 0 is an id; else all are of one kind
+  std::optional<std::uint8_t> only_of_id{};  ///< of other ids each counts
 };
 
 class ArrivalQueue {

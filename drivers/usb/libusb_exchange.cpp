@@ -33,8 +33,9 @@ LibusbExchange::~LibusbExchange() {
 }
 
 void LibusbExchange::pump() noexcept {
+  const std::int64_t before_ns = monotonic_ns();
   session_->pump();
-  reads_.looked();
+  reads_.looked(before_ns);
 }
 
 Arrival LibusbExchange::receive(std::int64_t until_ns) noexcept {

@@ -26,10 +26,10 @@ NotOpened gone_meanwhile(const About& about) {
           .error = {words(about) + " was unplugged while it was opened", ExitCode::unavailable}};
 }
 
-tl::unexpected<NotOpened> not_opened(const ChosenInterface& chosen, int error) {
+tl::unexpected<NotOpened> no_node(const ChosenInterface& chosen, int error) {
+  const std::string& node = chosen.device.node;
   if (error == ENODEV || error == ENXIO) return tl::unexpected(gone_meanwhile(chosen.device.about));
-  const Error problem = open_problem(chosen.device.node, error);
-  return refused(problem.code, words(chosen.device.about) + ": " + problem.text);
+  return tl::unexpected(not_opened(words(chosen.device.about), node, open_problem(node, error)));
 }
 
 tl::unexpected<NotOpened> not_claimed(const ChosenInterface& chosen, int error) {
@@ -75,7 +75,7 @@ Status status_of_transfer(libusb_transfer_status status) noexcept {
 Opened<std::unique_ptr<LibusbSession>> LibusbSession::open(const ChosenInterface& chosen,
                                                            Waker& waker) {
   const int node = ::open(chosen.device.node.c_str(), O_RDWR | O_CLOEXEC);
-  if (node < 0) return not_opened(chosen, errno);
+  if (node < 0) return no_node(chosen, errno);
   std::unique_ptr<LibusbSession> session(new LibusbSession(waker));
   if (const int error = session->wrap(node); error != 0)
     return refused(ExitCode::unavailable, words(chosen.device.about) + ": libusb cannot use " +

@@ -36,7 +36,7 @@ class Reads {
   void cancel() noexcept;
   bool idle() const noexcept { return under_way_ == 0; }
   /// After all that had come was handed over.
-  void looked() noexcept { last_look_.looked(monotonic_ns()); }
+  void looked(std::int64_t before_ns) noexcept { last_look_.looked(before_ns); }
   /// What ended a transfer; it stays ended until begin(). ok: nothing did.
   Status failure() const noexcept { return failure_; }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <ctime>
 #include <system_error>
 
 namespace hapticd::usb {
@@ -59,6 +60,15 @@ Error open_problem(const std::string& node, int error) {
                 "pass /dev on)",
             ExitCode::unavailable};
   return {node + " cannot be opened: " + reason, ExitCode::unavailable};
+}
+
+NotOpened not_opened(const std::string& what, const std::string& node, const Error& problem) {
+  constexpr std::time_t kUdevTakes_s = 3;
+  struct stat status {};
+  const bool is_new =
+      ::stat(node.c_str(), &status) == 0 && std::time(nullptr) - status.st_ctime < kUdevTakes_s;
+  return {.absent = is_new && problem.code == ExitCode::no_permission,
+          .error = {what + ": " + problem.text, problem.code}};
 }
 
 std::optional<Error> access_problem(const std::string& node) {

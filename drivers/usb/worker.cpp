@@ -145,7 +145,8 @@ bool Worker::hear(const Arrival& arrival) {
       exchange_.traffic.malformed.fetch_add(1, std::memory_order_relaxed);
       break;
     case Heard::sample:
-      reading_.stamp_ns = heard_ns_ = arrival.stamp_ns;
+      reading_.stamp_ns = arrival.stamp_ns;
+      heard_ns_ = std::max(heard_ns_, arrival.stamp_ns);
       exchange_.reading.store(reading_);
       break;
     case Heard::fault:

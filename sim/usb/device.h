@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/motor.h"
@@ -27,6 +28,11 @@ struct Answer {
   std::vector<std::uint8_t> bytes{};
 };
 
+/// As UTF-8; empty: there is none.
+struct Names {
+  std::string manufacturer{}, product{}, serial{};
+};
+
 enum class Speed : std::uint8_t { full, high };
 
 /// Time is the host's [ns].
@@ -42,8 +48,7 @@ class Device {
   virtual std::vector<std::uint8_t> device_descriptor() const = 0;  ///< 18 bytes
   virtual std::vector<std::uint8_t> configuration_descriptor()
       const = 0;  ///< with all that belongs to it
-  /// As UTF-8; empty: there is none. 1: manufacturer, 2: product, 3: serial.
-  virtual const char* text(int index) const = 0;
+  virtual Names names() const = 0;
   /// Of a HID interface; empty: it is none, or has no such one.
   virtual std::vector<std::uint8_t> report_descriptor(int interface) const = 0;
 

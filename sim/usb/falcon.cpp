@@ -20,17 +20,8 @@ std::vector<std::uint8_t> Falcon::configuration_descriptor() const {
       .bytes();
 }
 
-const char* Falcon::text(int index) const {
-  switch (index) {
-    case 1:
-      return "FTDI";
-    case 2:
-      return "FALCON HAPTIC";
-    case 3:
-      return options_.serial.c_str();
-    default:
-      return "";
-  }
+Names Falcon::names() const {
+  return {.manufacturer = "FTDI", .product = "FALCON HAPTIC", .serial = options_.serial};
 }
 
 Answer Falcon::control(const Setup& setup, std::span<const std::uint8_t>, std::int64_t now_ns) {

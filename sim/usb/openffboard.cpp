@@ -65,17 +65,8 @@ std::vector<std::uint8_t> Openffboard::configuration_descriptor() const {
       .bytes();
 }
 
-const char* Openffboard::text(int index) const {
-  switch (index) {
-    case 1:
-      return "Open FFBoard";
-    case 2:
-      return options_.product.c_str();
-    case 3:
-      return options_.serial.c_str();
-    default:
-      return "";
-  }
+Names Openffboard::names() const {
+  return {.manufacturer = "Open FFBoard", .product = options_.product, .serial = options_.serial};
 }
 
 std::vector<std::uint8_t> Openffboard::report_descriptor(int interface) const {

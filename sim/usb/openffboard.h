@@ -34,7 +34,7 @@ class Openffboard final : public Device {
 
   std::vector<std::uint8_t> device_descriptor() const override;
   std::vector<std::uint8_t> configuration_descriptor() const override;
-  const char* text(int index) const override;
+  Names names() const override;
   std::vector<std::uint8_t> report_descriptor(int interface) const override;
 
   Answer control(const Setup& setup, std::span<const std::uint8_t> data,

@@ -53,17 +53,10 @@ std::vector<std::uint8_t> ReportBoard::configuration_descriptor() const {
   return all.bytes();
 }
 
-const char* ReportBoard::text(int index) const {
-  switch (index) {
-    case 1:
-      return options_.manufacturer.c_str();
-    case 2:
-      return options_.product.c_str();
-    case 3:
-      return options_.serial.c_str();
-    default:
-      return "";
-  }
+Names ReportBoard::names() const {
+  return {.manufacturer = options_.manufacturer,
+          .product = options_.product,
+          .serial = options_.serial};
 }
 
 std::vector<std::uint8_t> ReportBoard::report_descriptor(int interface) const {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace hapticd::sim::usb {
 namespace {
@@ -34,8 +35,8 @@ std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);
 }
 
-void put_text(__u8* to, std::size_t room, const char* text) {
-  if (text != nullptr) std::memcpy(to, text, std::min(std::strlen(text), room - 1));
+void put_text(__u8* to, std::size_t room, std::string_view text) {
+  std::ranges::copy(text.substr(0, room - 1), to);
 }
 
 /// Without its 0 where there are no ids.
@@ -128,9 +129,9 @@ void UhidDevice::show() {
   uhid_event event{};
   event.type = UHID_CREATE2;
   auto& told = event.u.create2;
-  put_text(told.name, sizeof told.name, device.text(2));
+  put_text(told.name, sizeof told.name, device.names().product);
   put_text(told.phys, sizeof told.phys, "emulated");
-  put_text(told.uniq, sizeof told.uniq, device.text(3));
+  put_text(told.uniq, sizeof told.uniq, device.names().serial);
   told.rd_size = static_cast<__u16>(std::min<std::size_t>(reports.size(), HID_MAX_DESCRIPTOR_SIZE));
   told.bus = BUS_USB;
   told.vendor = word(about, 8);

@@ -130,9 +130,13 @@ Answer Wire::hid_descriptor(const Setup& setup) const {
 
 Answer Wire::string(int index) const {
   if (index == 0) return {.bytes = {4, kOfString, 0x09, 0x04}};  // English, United States
-  const char* text = device_.text(index);
-  if (text == nullptr || *text == 0) return refused();
-  std::vector<std::uint8_t> bytes = wide(text);
+  const Names names = device_.names();
+  const std::string text = index == 1   ? names.manufacturer
+                           : index == 2 ? names.product
+                           : index == 3 ? names.serial
+                                        : std::string();
+  if (text.empty()) return refused();
+  std::vector<std::uint8_t> bytes = wide(text.c_str());
   if (bytes.size() > 252) bytes.resize(252);
   const std::uint8_t head[] = {static_cast<std::uint8_t>(bytes.size() + 2), kOfString};
   bytes.insert(bytes.begin(), head, head + 2);

@@ -276,11 +276,9 @@ class VirtualHost final : public usb::Host {
   }
   template <class P>
   usb::Found<P> found(std::unique_ptr<P> port) {
-    const char* serial = usb_.wire.device().text(3);
-    return {.port = std::move(port),
-            .product = usb_.wire.device().text(2),
-            .serial = serial == nullptr ? "" : serial,
-            .path = "1-1"};
+    const sim::usb::Names names = usb_.wire.device().names();
+    return {
+        .port = std::move(port), .product = names.product, .serial = names.serial, .path = "1-1"};
   }
   /// Of the interface that is asked for; else of the first with endpoints both ways.
   Endpoints ends_of(const usb::Selection& selection) {

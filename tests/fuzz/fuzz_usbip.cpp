@@ -31,7 +31,7 @@ class Mirror final : public Device {
     return {9, 2, 46, 0, 1, 1, 0,  0x80, 50, 9, 4, 0,    0, 4,  0xff, 0, 0, 0, 7, 5, 0x81, 3, 64,
             0, 1, 7,  5, 1, 3, 64, 0,    1,  7, 5, 0x82, 2, 64, 0,    0, 7, 5, 2, 2, 64,   0, 0};
   }
-  const char* text(int) const override { return ""; }
+  sim::usb::Names names() const override { return {}; }
   std::vector<std::uint8_t> report_descriptor(int) const override { return {}; }
   Answer control(const Setup& setup, std::span<const std::uint8_t>, std::int64_t) override {
     return {.kind = static_cast<Answer::Kind>(setup.value % 3),

@@ -41,9 +41,8 @@ class EchoUsb final : public sim::usb::Device {
     all[2] = static_cast<std::uint8_t>(all.size());
     return all;
   }
-  const char* text(int index) const override {
-    constexpr std::array kTexts{"", "maker", "echo", "E1"};
-    return index >= 1 && index <= 3 ? kTexts[static_cast<std::size_t>(index)] : "";
+  sim::usb::Names names() const override {
+    return {.manufacturer = "maker", .product = "echo", .serial = "E1"};
   }
   UsbBytes report_descriptor(int interface) const override {
     if (interface != 0) return {};

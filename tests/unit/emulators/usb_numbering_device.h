@@ -26,7 +26,7 @@ class NumberingDevice final : public sim::usb::Device {
         .endpoint(0x03, Kind::interrupt, 64, 4)
         .bytes();
   }
-  const char* text(int index) const override { return index == 2 ? "M\u00fchle" : ""; }
+  sim::usb::Names names() const override { return {.product = "M\u00fchle"}; }
   UsbBytes report_descriptor(int interface) const override {
     return interface == 0 ? UsbBytes{1, 2, 3} : UsbBytes{};
   }

@@ -45,7 +45,7 @@ class BoardPort final : public HidPort {
     number_ = board_.opened.get();
   }
   ~BoardPort() override {
-    if (steps_ != 0 && board_.plugged.get()) board_.left_with_force.count();
+    if (steps_ != 0 && !gone_) board_.left_with_force.count();
     board_.closed.count();
   }
   Arrival receive(std::int64_t until_ns) override {
@@ -53,7 +53,8 @@ class BoardPort final : public HidPort {
       std::array waker{waker_.descriptor()};
       wait_for(waker, std::min(until_ns, last_ns_ + kReport_ns));
     }
-    if (!board_.plugged.get()) return {.status = Status::gone};
+    gone_ = gone_ || !board_.plugged.get();
+    if (gone_) return {.status = Status::gone};
     const std::int64_t now_ns = monotonic_ns();
     if (now_ns < last_ns_ + kReport_ns) return {};
     last_ns_ = now_ns;
@@ -62,7 +63,8 @@ class BoardPort final : public HidPort {
     return {.status = Status::ok, .bytes = report_, .stamp_ns = now_ns};
   }
   Status send(std::span<const std::uint8_t> bytes) override {
-    if (!board_.plugged.get()) return Status::gone;
+    gone_ = gone_ || !board_.plugged.get();
+    if (gone_) return Status::gone;
     std::memcpy(&steps_, bytes.data(), sizeof(steps_));
     if (steps_ != 0) board_.forces.count();
     if (steps_ != 0 && steps_ != number_ * kStepsEach) board_.foreign.count();
@@ -81,6 +83,7 @@ class BoardPort final : public HidPort {
   Board& board_;
   Waker& waker_;
   int number_ = 0, reports_ = 0;
+  bool gone_ = false;
   std::int32_t steps_ = 0;
   std::int64_t last_ns_ = 0;
   std::array<std::uint8_t, 8> report_{};
@@ -180,9 +183,14 @@ TEST(UsbThread, ComesAndGoesBesideALoopAndNoForceGoesAstray) {
       board.plugged.set(false);
       up_ticks = 0;
       ++forced_connections;
-    } else if (!board.plugged.get() && loop.aux.faulted) {
+    } else if (!board.plugged.get() && (loop.aux.faulted || forced_connections % 3 == 0)) {
       forces = board.forces.get();
       board.plugged.set(true);
+      // Now and then the loop stands still meanwhile, and its last force is still there.
+      const int before = board.opened.get();
+      while (forced_connections % 3 == 0 && board.opened.get() == before &&
+             std::chrono::steady_clock::now() < give_up)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }

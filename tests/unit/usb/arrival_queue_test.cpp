@@ -56,17 +56,19 @@ TEST(ArrivalQueue, WithoutIdsTheNewestTakesThePlaceOfAll) {
   EXPECT_EQ(queue.skipped(), 4U);
 }
 
-TEST(ArrivalQueue, WithIdsTheNewestOfEachStaysAndAnswersAll) {
-  ArrivalQueue queue(8, {.newest_only = true, .numbered = true, .all_of_id = 0xa1});
+TEST(ArrivalQueue, OfPositionsTheNewestStaysAndOfOtherIdsAll) {
+  ArrivalQueue queue(8, {.newest_only = true, .numbered = true, .only_of_id = 1});
   queue.push(ArrivalBytes{1, 1}, 1);
   queue.push(ArrivalBytes{0xa1, 1}, 2);
   queue.push(ArrivalBytes{2, 1}, 3);
   queue.push(ArrivalBytes{1, 2}, 4);
   queue.push(ArrivalBytes{0xa1, 2}, 5);
+  queue.push(ArrivalBytes{2, 2}, 6);
   EXPECT_EQ(next(queue), (ArrivalBytes{1, 2})) << "in the place of the one that it replaces";
   EXPECT_EQ(next(queue), (ArrivalBytes{0xa1, 1}));
   EXPECT_EQ(next(queue), (ArrivalBytes{2, 1}));
   EXPECT_EQ(next(queue), (ArrivalBytes{0xa1, 2}));
+  EXPECT_EQ(next(queue), (ArrivalBytes{2, 2})) << "a state is no position";
   EXPECT_EQ(queue.skipped(), 1U);
 }
 
@@ -86,11 +88,11 @@ hid::ReportDescriptor descriptor_with(std::uint8_t id, std::uint32_t in_bytes,
   return descriptor;
 }
 
-TEST(Superseding, OnlyTheCommandChannelByIdAndLengthIsKept) {
-  EXPECT_EQ(hid::superseding_of(descriptor_with(0xa1, 25, 25)).all_of_id, 0xa1);
-  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa1, 24, 25)).all_of_id);
-  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa1, 25, 0)).all_of_id);
-  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa2, 25, 25)).all_of_id);
+TEST(Superseding, AnOpenFfboardIsKnownByItsCommandChannel) {
+  EXPECT_EQ(hid::superseding_of(descriptor_with(0xa1, 25, 25)).only_of_id, 1);
+  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa1, 24, 25)).only_of_id);
+  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa1, 25, 0)).only_of_id);
+  EXPECT_FALSE(hid::superseding_of(descriptor_with(0xa2, 25, 25)).only_of_id);
   EXPECT_TRUE(hid::superseding_of(descriptor_with(1, 8, 8)).newest_only);
 }
 

@@ -223,21 +223,30 @@ TEST(OpenFfboardDriver, KeepsAliveInTime) {
 
 /// It tells its position when that changes; else its answers say that it has not. Told as by the device's thread.
 TEST(OpenFfboardDriver, SamplesAreYoungEnoughHoweverItMoves) {
+  struct Case {
+    double age_s;
+    std::int64_t loop_ns;
+  };
   for (const bool armed : {false, true})
-    for (const double age_s : {0.0065, 0.008, 0.012}) {
+    for (const auto& [age_s, loop_ns] :
+         {Case{0.0065, 10 * kFrame_ns}, Case{0.008, kFrame_ns}, Case{0.012, kFrame_ns}}) {
       auto options = board_options();
       options.worst_sample_age_s = age_s;
       BoardRig rig({}, options);
       ASSERT_TRUE(rig.open()) << rig.why();
       armed ? rig.arm() : rig.wait_for_position();
-      std::int64_t last_ns = rig.sample_ns, most_ns = 0;
-      for (int i = 0; i < 3000; ++i) {
-        if (i % 97 == 0 || i % 503 < 20) ++rig.board.position[0];
-        const double effort = armed ? 0.001 * (i % 1000) : 0;
+      std::int64_t last_ns = rig.sample_ns, most_ns = 0, loop_at_ns = 0;
+      usb::Command command{.armed = armed};
+      for (int i = 0; i < 6000; ++i) {
+        if (i % 197 == 0 || i % 1009 < 40) ++rig.board.position[0];
         const std::int64_t now_ns = rig.board.now_ns;
-        ASSERT_EQ(rig.protocol->tell({.effort = {effort}, .at_ns = now_ns, .armed = armed}, now_ns),
-                  usb::Status::ok);
-        rig.hear(std::min(now_ns + kFrame_ns, rig.protocol->tell_again_ns(now_ns)));
+        if (now_ns >= loop_at_ns) {
+          loop_at_ns = now_ns + loop_ns;
+          command.effort[0] = armed ? 0.001 * (i % 1000) : 0;
+          command.at_ns = now_ns;
+        }
+        ASSERT_EQ(rig.protocol->tell(command, now_ns), usb::Status::ok);
+        rig.hear(std::min(loop_at_ns, rig.protocol->tell_again_ns(now_ns)));
         if (rig.sample_ns == last_ns) continue;
         most_ns = std::max(most_ns, rig.sample_ns - last_ns);
         last_ns = rig.sample_ns;
@@ -246,6 +255,51 @@ TEST(OpenFfboardDriver, SamplesAreYoungEnoughHoweverItMoves) {
           << age_s << (armed ? ", with forces" : "");
       EXPECT_EQ(rig.faults, 0);
     }
+}
+
+/// The newest magnitude is with the board within `send_s`: what it waits for is one report on its way and one other.
+TEST(OpenFfboardDriver, ForceIsWithTheBoardInTimeWhateverElseIsAsked) {
+  for (const std::size_t axes : {1U, 2U}) {
+    BoardRig rig({.axes = static_cast<int>(axes)}, board_options(axes));
+    ASSERT_TRUE(rig.open()) << rig.why();
+    rig.arm();
+    const std::int64_t most_ns = (2 + static_cast<std::int64_t>(axes)) * kFrame_ns;
+    usb::Command command{.armed = true};
+    for (int i = 1; i < 1000; ++i) {
+      for (std::size_t a = 0; a < axes; ++a) command.effort[a] = 0.002 * (i % 500) + 0.1 * (i % 2);
+      command.at_ns = rig.board.now_ns;
+      std::array<int, 2> wanted{};
+      for (std::size_t a = 0; a < axes; ++a)
+        wanted[a] = static_cast<int>(
+            std::lround(rig.protocol->carried(a, command.effort[a]) * 32767 / kFull_Nm));
+      const auto is_there = [&] {
+        for (std::size_t a = 0; a < axes; ++a)
+          if (rig.board.torque(static_cast<int>(a)) != wanted[a]) return false;
+        return true;
+      };
+      while (!is_there()) {
+        const std::int64_t now_ns = rig.board.now_ns;
+        ASSERT_LE(now_ns - command.at_ns, most_ns) << axes << " axes, command " << i;
+        ASSERT_EQ(rig.protocol->tell(command, now_ns), usb::Status::ok);
+        rig.hear(rig.protocol->tell_again_ns(now_ns));
+      }
+      if (i % 7 == 0) rig.hear(rig.board.now_ns + i % 3 * kFrame_ns / 2);
+    }
+    EXPECT_EQ(rig.faults, 0);
+  }
+}
+
+TEST(OpenFfboardDriver, AnswersThatAreLostNowAndThenMakeNoPause) {
+  BoardRig rig;
+  ASSERT_TRUE(rig.open());
+  rig.wait_for_position();
+  std::int64_t oldest_ns = 0;
+  for (int i = 0; i < 3000; ++i) {
+    rig.board.mute = i % 50 == 0;
+    rig.tick(false);
+    if (i % 50 > 10) oldest_ns = std::max(oldest_ns, rig.board.now_ns - rig.sample_ns);
+  }
+  EXPECT_LE(oldest_ns, 6 * kFrame_ns);
 }
 
 TEST(OpenFfboardDriver, BoardThatAnswersTooSlowlyForTheAgeOfItsSamplesIsRefused) {

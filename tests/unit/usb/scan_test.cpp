@@ -163,5 +163,19 @@ TEST(NodeAccess, IsAskedForBothDirectionsAsTheProcessIs) {
   EXPECT_FALSE(usb::access_problem(node));
 }
 
+/// Else a service that starts while its device is plugged in would end for good.
+TEST(NodeAccess, ARightThatIsMissingToANewNodeIsWaitedForAndNothingElse) {
+  const DeviceTree tree;
+  tree.write("dev/hidraw0", "");
+  const Error no_right = usb::open_problem(tree.at("dev/hidraw0"), EACCES);
+  const auto fresh = usb::not_opened("Board", tree.at("dev/hidraw0"), no_right);
+  EXPECT_TRUE(fresh.absent);
+  EXPECT_THAT(fresh.error.text, AllOf(HasSubstr("Board: no right"), HasSubstr("60-hapticd.rules")));
+  EXPECT_FALSE(usb::not_opened("Board", HAPTICD_SOURCE_DIR "/README.md", no_right).absent)
+      << "that is older";
+  const Error other = usb::open_problem(tree.at("dev/hidraw0"), EIO);
+  EXPECT_FALSE(usb::not_opened("Board", tree.at("dev/hidraw0"), other).absent);
+}
+
 }  // namespace
 }  // namespace hapticd::test

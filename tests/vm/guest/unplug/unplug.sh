@@ -76,7 +76,7 @@ pulled() {
   pull_out "$when"
   sleep 0.3
   after=$(state)
-  [ "$after" != enabled ] || why="$why; still enabled"
+  case $after in connecting | ready | homing | fault) ;; *) why="$why; still '$after'" ;; esac
   befall "plug:$device"
   case $when in
     homing | ready | enabled)
@@ -84,7 +84,7 @@ pulled() {
       sleep 0.7
       befall "mark:$device"
       sleep 0.2
-      [ "$(state)" != enabled ] || why="$why; enabled by itself"
+      case $(state) in ready | homing | fault) ;; *) why="$why; enabled by itself" ;; esac
       befall "mark:$device"
       while read -r line <&4; do :; done
       hapticctl enable > "$scratch/enable" 2>&1 || true
@@ -105,6 +105,8 @@ pulled() {
       force=$(phase mark largest_torque 1)
       figures="$figures, largest torque before it was enabled again $force N m"
       holds "${force:-1} == 0" || why="$why; force that nobody asked for"
+      # An OpenFFBoard has a spring of its own until it is set up.
+      [ "$device" = wheel ] || holds "$(phase plug largest_torque) == 0" || why="$why; force after it was plugged in"
       ;;
   esac
   if [ "$when" = enabled ]; then
@@ -112,7 +114,6 @@ pulled() {
     figures="$figures, first tick of the fault after $late ms, a tick is $tick_ms ms"
     { [ "$late" != none ] && holds "${late:-99} < $tick_ms + 0.5"; } || why="$why; the fault is late"
   else
-    # An OpenFFBoard has a spring of its own until it is set up.
     [ "$device" = wheel ] || holds "$(phase unplug largest_torque) == 0" || why="$why; force before it was ready"
   fi
   if [ -z "$why" ]; then ok "$check" "$figures"; else

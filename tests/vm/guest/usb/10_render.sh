@@ -31,8 +31,9 @@ render() {
   hapticctl export --csv -o "$scratch/ticks.csv" /run/usb.hrec > /dev/null 2>&1 || true
   force=$(column "$field")
   missed=$(summary_line "$scratch/summary" 'missed ticks' | cut -d' ' -f1)
-  figures="$field ${force:-?}, missed ticks ${missed:-?}, samples held: $(summary_line "$scratch/summary" 'samples held'), ended with $code"
-  if [ "$alive" -eq 1 ] && [ "$code" -eq 0 ] && [ "$missed" = 0 ] && holds "${force:-0} > $least && ${force:-0} < $most"; then
+  held=$(summary_line "$scratch/summary" 'samples held')
+  figures="$field ${force:-?}, missed ticks ${missed:-?}, samples held: ${held:-?}, ended with $code"
+  if [ "$alive" -eq 1 ] && [ "$code" -eq 0 ] && [ "$missed" = 0 ] && [ "$held" = 0 ] && holds "${force:-0} > $least && ${force:-0} < $most"; then
     ok "$check" "$figures"
   else
     failed "$check" "$figures"
