@@ -69,6 +69,7 @@ int hid_read_timeout(hid_device*, unsigned char* data, size_t length, int millis
 
 int hid_write(hid_device*, const unsigned char* data, size_t length) {
   auto& fake = fake_hidapi();
+  if (fake.while_writing) fake.while_writing();
   errno = fake.write_error;
   if (fake.write_error != 0) return -1;
   fake.written.emplace_back(data, data + length);

@@ -19,7 +19,7 @@ struct FakeHidapi {
   HidBytes feature{};                   ///< the answer to get
   int read_error = 0, write_error = 0;  ///< errno; 0: works
   int longest_wait_ms = 0, closed = 0;
-  std::function<void()> while_waiting{};
+  std::function<void()> while_waiting{}, while_writing{};
 };
 /// The one that is.
 FakeHidapi& fake_hidapi();

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -164,6 +165,28 @@ TEST_F(Hidapi, AReportWithoutIdGoesOutBehindAZero) {
   EXPECT_EQ(port_->outgoing().sent, 1U);
   EXPECT_EQ(port_->outgoing().since_ns, 0);
   EXPECT_GE(port_->outgoing().worst_took_ns, port_->outgoing().last_took_ns);
+}
+
+/// The thread sees it only afterwards, and does not know when it came.
+TEST_F(Hidapi, WhatComesWhileAReportGoesOutIsAsOldAsItMayBe) {
+  open(vendor_descriptor());
+  ASSERT_TRUE(port_) << refusal_.error.text;
+  EXPECT_EQ(port_->receive(host_->now_ns()).status, Status::nothing);
+  std::int64_t came_ns = 0;
+  fake_hidapi().while_writing = [&] {
+    came_ns = host_->now_ns();
+    fake_hidapi().waiting.push_back({9});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  EXPECT_EQ(port_->send(HidBytes{7, 8}), Status::ok);
+  const usb::Arrival arrival = port_->receive(later());
+  ASSERT_EQ(arrival.status, Status::ok);
+  EXPECT_LE(arrival.stamp_ns, came_ns);
+  fake_hidapi().while_writing = {};
+  EXPECT_EQ(port_->receive(host_->now_ns()).status, Status::nothing);
+  const std::int64_t later_ns = host_->now_ns();
+  fake_hidapi().waiting.push_back({10});
+  EXPECT_GE(port_->receive(later()).stamp_ns, later_ns) << "it looks again";
 }
 
 TEST_F(Hidapi, AReportWithIdGoesOutAsItIs) {

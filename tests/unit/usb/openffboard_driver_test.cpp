@@ -289,6 +289,22 @@ TEST(OpenFfboardDriver, ForceIsWithTheBoardInTimeWhateverElseIsAsked) {
   }
 }
 
+/// It is asked meanwhile, and what it answers then is no longer true.
+TEST(OpenFfboardDriver, AnswersFromWhileItWasSwitchedOnMeanNothing) {
+  auto options = board_options(2);
+  options.worst_sample_age_s = 0.02;
+  BoardRig rig({.axes = 2}, options);
+  rig.board.answer_delay_ns = 8 * kFrame_ns;
+  ASSERT_TRUE(rig.open()) << rig.why();
+  rig.wait_for_position();
+  for (int i = 0; i < 10; ++i) {
+    rig.ticks(30, false);
+    rig.ticks(60 + i, true);
+    EXPECT_TRUE(rig.reading.armed) << i;
+    EXPECT_EQ(rig.faults, 0) << i;
+  }
+}
+
 TEST(OpenFfboardDriver, AnswersThatAreLostNowAndThenMakeNoPause) {
   BoardRig rig;
   ASSERT_TRUE(rig.open());

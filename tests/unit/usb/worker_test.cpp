@@ -57,7 +57,7 @@ class ScriptPort final : public Port {
     if (arrivals.empty()) return {};
     Arrival arrival = arrivals.front();
     arrivals.pop_front();
-    arrival.stamp_ns = host_.now_ns();
+    if (arrival.stamp_ns == 0) arrival.stamp_ns = host_.now_ns();
     return arrival;
   }
   Status send(std::span<const std::uint8_t>) override {
@@ -273,6 +273,17 @@ TEST_P(UsbWorkerWaysOut, TellsTheLoopAndThenTheDevice) {
   EXPECT_EQ(protocol_.way_out_ns[0], 20 * kMillisecond_ns);
   EXPECT_THAT(exchange_.lost.text(), HasSubstr("device (Device, serial S1): "));
   EXPECT_THAT(exchange_.lost.text(), HasSubstr(GetParam().words));
+}
+
+TEST_F(UsbWorker, ASampleThatMayBeOldDoesNotMakeTheDeviceSilent) {
+  for (int at_ms = 10; at_ms <= 200; at_ms += 50) arrives(at_ms);
+  host_.at(210, [this] {
+    port().arrivals.push_back({.status = Status::ok, .stamp_ns = 50 * kMillisecond_ns});
+    host_.wake();
+  });
+  run(230);
+  EXPECT_EQ(exchange_.lost.text(), "");
+  EXPECT_THAT(protocol_.opened_ms, ElementsAre(0));
 }
 
 TEST_F(UsbWorker, WhatABabblingDeviceSendsIsNoSample) {
