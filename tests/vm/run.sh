@@ -7,11 +7,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 usage() {
   cat << 'END'
-usage: tests/vm/run.sh [--suite can|usb|unplug|beside] [--build DIR] [--only TEXT] [PROGRAM...]
+usage: tests/vm/run.sh [--suite can|usb|unplug|beside|certified] [--build DIR] [--only TEXT] [PROGRAM...]
   --suite can     CAN and the loop's punctuality, in guest time alone
   --suite usb     devices on USB, likewise
   --suite unplug  these pulled out and plugged in again, likewise
-  --suite beside  a device of QEMU with a program beside it, in the host's time (without --suite: all)
+  --suite beside  a device of QEMU with a program beside it, in the host's time (without --suite: all so far)
+  --suite certified  likewise with a certified wall: for a host that does nothing else
   --build DIR   where hapticd and hapticctl were built (build)
   --only TEXT   only the scripts of tests/vm/guest with TEXT in their name
   PROGRAM       further programs for the guest, into its /usr/bin
@@ -30,7 +31,7 @@ while [ $# -gt 0 ]; do
       case $1 in
         --suite)
           case $2 in
-            can | usb | unplug | beside) suites=("$2") ;;
+            can | usb | unplug | beside | certified) suites=("$2") ;;
             *) echo "tests/vm/run.sh: no suite $2" >&2 && exit 64 ;;
           esac
           ;;
@@ -96,13 +97,15 @@ boot_can() {
 boot_usb() { boot usb "${guest_time[@]}"; }
 boot_unplug() { boot unplug "${guest_time[@]}"; }
 # A Falcon's board, to which QEMU's bridge has a line.
-boot_beside() {
+boot_beside() { boot_bridge beside tests/vm/configs/usb_serial.yaml; }
+boot_certified() { boot_bridge certified tests/vm/configs/usb_serial_certified.yaml; }
+boot_bridge() { # boot_bridge <suite> <config>
   local code=0 line=build/vm/line board
   [ -x "$build/tests/falcon_line" ] || { echo "vm: not built: $build/tests/falcon_line" >&2 && return 1; }
   rm -f "$line"
-  "$build/tests/falcon_line" "$line" tests/vm/configs/usb_serial.yaml build/vm/falcon.bin > build/vm/falcon_line.json &
+  "$build/tests/falcon_line" "$line" "$2" build/vm/falcon.bin > build/vm/falcon_line.json &
   board=$!
-  boot beside -device piix3-usb-uhci -chardev "socket,id=line,path=$line,server=on,wait=off" \
+  boot "$1" -device piix3-usb-uhci -chardev "socket,id=line,path=$line,server=on,wait=off" \
     -device usb-serial,chardev=line || code=$?
   wait "$board" || true
   echo "falcon_line: $(cat build/vm/falcon_line.json)"
