@@ -1,25 +1,15 @@
 #include "drivers/usb/this_host.h"
 
-#include <array>
-
 #include "drivers/hid/hidapi_port.h"
 #include "drivers/usb/libusb_port.h"
-#include "drivers/usb/waker.h"
+#include "drivers/usb/waker_host.h"
 
 namespace hapticd::usb {
 namespace {
 
-class ThisHost final : public Host {
+class ThisHost final : public WakerHost {
  public:
   explicit ThisHost(const Roots& roots) : roots_(roots) {}
-
-  std::int64_t now_ns() noexcept override { return monotonic_ns(); }
-  void wait(std::int64_t until_ns) override {
-    std::array waker{waker_.descriptor()};
-    wait_for(waker, until_ns);
-    (void)waker_.take();
-  }
-  void wake() noexcept override { waker_.wake(); }
 
   Opened<Found<BulkPort>> open_bulk(const Selection& selection, std::uint8_t bulk_in,
                                     std::uint8_t bulk_out) override {
@@ -32,7 +22,6 @@ class ThisHost final : public Host {
 
  private:
   const Roots roots_;
-  Waker waker_;
 };
 
 }  // namespace

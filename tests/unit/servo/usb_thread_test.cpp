@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "drivers/usb/usb_device.h"
-#include "drivers/usb/waker.h"
+#include "drivers/usb/waker_host.h"
 #include "tests/support/heap_guard.h"
 
 namespace hapticd::usb {
@@ -94,16 +94,9 @@ class BoardPort final : public HidPort {
                                               0x81, 0x02, 0x09, 0x01, 0x91, 0x02, 0xc0};
 };
 
-class BoardHost final : public Host {
+class BoardHost final : public WakerHost {
  public:
   explicit BoardHost(Board& board) : board_(board) {}
-  std::int64_t now_ns() noexcept override { return monotonic_ns(); }
-  void wait(std::int64_t until_ns) override {
-    std::array waker{waker_.descriptor()};
-    wait_for(waker, until_ns);
-    (void)waker_.take();
-  }
-  void wake() noexcept override { waker_.wake(); }
   Opened<Found<BulkPort>> open_bulk(const Selection&, std::uint8_t, std::uint8_t) override {
     return tl::unexpected(NotOpened{});
   }
@@ -117,7 +110,6 @@ class BoardHost final : public Host {
 
  private:
   Board& board_;
-  Waker waker_;
 };
 
 /// Times so long that a machine that is busy, or slow with a sanitizer, fails nothing.
